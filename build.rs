@@ -1,0 +1,66 @@
+//! Finds PETSc by pkg-config and writes the Rust declarations of exactly the PETSc names that `src/petsc` calls.
+
+use std::path::PathBuf;
+
+/// The PETSc functions that `src/petsc` calls, and no others.
+const FUNCTIONS: &str = include_str!("src/petsc/functions.txt");
+
+fn main() {
+    println!("cargo:rerun-if-changed=src/petsc/functions.txt");
+    println!("cargo:rerun-if-changed=src/petsc/wrapper.h");
+    println!("cargo:rerun-if-changed=.git/HEAD");
+    println!("cargo:rerun-if-changed=.git/refs/heads");
+    println!("cargo:rustc-env=MPJR_GIT_COMMIT={}", git_commit());
+
+    let petsc = pkg_config::Config::new()
+        .atleast_version("3.15")
+        .probe("petsc")
+        .unwrap_or_else(|error| panic!("PETSc was not found; ci/packages.txt lists the Debian packages\n{error}"));
+    // petsc.pc names neither MPI's headers nor HDF5's.
+    let include_only = |name: &str| {
+        pkg_config::Config::new()
+            .cargo_metadata(false)
+            .probe(name)
+            .unwrap_or_else(|error| panic!("{name} was not found; ci/packages.txt lists the Debian packages\n{error}"))
+            .include_paths
+    };
+    let includes: Vec<PathBuf> = [petsc.include_paths, include_only("mpi-c"), include_only("hdf5-openmpi")].concat();
+
+    let mut builder = bindgen::Builder::default()
+        .header("src/petsc/wrapper.h")
+        .clang_args(includes.iter().map(|path| format!("-I{}", path.display())))
+        .allowlist_recursively(true)
+        // MPI's types come from mpi-sys, so that a communicator of the `mpi` crate goes straight into PETSc.
+        .blocklist_type("MPI_.*")
+        .blocklist_type("ompi_.*")
+        .opaque_type("FILE")
+        .opaque_type("_IO_.*")
+        .default_enum_style(bindgen::EnumVariation::Consts)
+        .default_macro_constant_type(bindgen::MacroTypeVariation::Signed)
+        .layout_tests(false)
+        .generate_comments(false);
+    for name in FUNCTIONS.lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
+        builder = if name.chars().next().is_some_and(char::is_uppercase) && name.contains('_') {
+            builder.allowlist_var(name)
+        } else {
+            builder.allowlist_function(name)
+        };
+    }
+    let out = PathBuf::from(std::env::var("OUT_DIR").expect("cargo sets OUT_DIR")).join("petsc.rs");
+    builder
+        .generate()
+        .expect("bindgen reads PETSc's headers (libclang1-14 and libclang-common-14-dev are needed)")
+        .write_to_file(out)
+        .expect("OUT_DIR is writable");
+}
+
+/// The commit this build was made from, or "unknown" outside a checkout.
+fn git_commit() -> String {
+    std::process::Command::new("git")
+        .args(["describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"])
+        .output()
+        .ok()
+        .filter(|output| output.status.success())
+        .and_then(|output| String::from_utf8(output.stdout).ok())
+        .map_or_else(|| "unknown".into(), |text| text.trim().to_owned())
+}

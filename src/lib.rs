@@ -1,0 +1,5 @@
+//! Parallel transient viscoelastic contact with friction, by interface finite elements with embedded profiles (MPJR).
+
+pub mod error;
+pub mod rheology;
+pub mod scene;

@@ -1,0 +1,2 @@
+#include <petscts.h>
+#include <petscdm.h>

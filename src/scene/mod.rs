@@ -1,0 +1,252 @@
+//! A scene as plain typed data: what the user asked for, read, checked and resolved.
+//!
+//! The only place that knows a key's name. All quantities are SI; every number here is finite and within the range
+//! its field states, because [`read`] refuses a file that says otherwise.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+/// One scene: the layer, its material, the indenter, the contact, the loading history, and what to keep of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Scene {
+    /// Free text, copied to the results.
+    pub title: String,
+    /// The deformable body.
+    pub layer: Layer,
+    /// What the body is made of.
+    pub material: Material,
+    /// The rigid indenter.
+    pub indenter: Indenter,
+    /// How non-penetration is enforced.
+    pub contact: Contact,
+    /// The friction law; none = frictionless.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction: Option<Friction>,
+    /// The loading history, in order; never empty.
+    #[serde(rename = "phase")]
+    pub phases: Vec<Phase>,
+    /// How it is solved.
+    pub solver: Solver,
+    /// What is written.
+    pub output: Output,
+}
+
+/// A rectangular layer; the lower face is clamped, the upper one is the contact face.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Layer {
+    /// Width, m, > 0; one period when `sides` is periodic.
+    pub width: f64,
+    /// Depth, m, > 0.
+    pub depth: f64,
+    /// Cells along the contact face and through the depth, each >= 1 (>= 2 along a periodic face).
+    pub cells: [usize; 2],
+    /// Height of the lowest cell over that of the top cell, > 0; 1 = uniform.
+    pub grading: f64,
+    /// What holds the two sides.
+    pub sides: Sides,
+}
+
+/// What holds the sides of a layer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Sides {
+    /// Left and right are the same nodes.
+    Periodic,
+    /// No traction.
+    Free,
+    /// No normal (x) displacement.
+    Roller,
+    /// No displacement.
+    Fixed,
+}
+
+/// A linear viscoelastic solid: instantaneous elasticity and the Prony arms of the shear modulus.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Material {
+    /// Instantaneous (t = 0) shear modulus, Pa, > 0.
+    pub shear_modulus: f64,
+    /// Instantaneous Poisson ratio, in (-1, 0.5).
+    pub poisson_ratio: f64,
+    /// Prony arms of the shear modulus; empty = linear elastic. The weights sum to at most 1.
+    pub arms: Vec<Arm>,
+    /// How the bulk modulus relaxes; always present when there are arms.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub poisson_rule: Option<PoissonRule>,
+    /// The update of the arms over a step.
+    pub memory: Memory,
+}
+
+/// One arm of a Prony series: G(t) = G_inst (1 - sum_i weight_i (1 - exp(-t / time_i))).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Arm {
+    /// Share of the instantaneous modulus, in (0, 1].
+    pub weight: f64,
+    /// Relaxation time, s, > 0.
+    pub time: f64,
+}
+
+/// How the bulk modulus goes with the relaxing shear modulus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PoissonRule {
+    /// The Poisson ratio stays; the bulk modulus relaxes with the shear modulus.
+    ConstantRatio,
+    /// The bulk modulus stays; the Poisson ratio rises as the shear modulus relaxes.
+    ConstantBulkModulus,
+}
+
+/// The time integration of an arm over one step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Memory {
+    /// Exact for a displacement linear over the step; second order.
+    Exponential,
+    /// First order.
+    BackwardEuler,
+}
+
+/// The rigid profile h(x), m, lowest at 0; it moves as h(x - s(t)).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "profile", rename_all = "lowercase")]
+pub enum Indenter {
+    /// h = amplitude (1 - cos(2 pi x / wavelength)); both > 0.
+    Harmonic {
+        /// m
+        amplitude: f64,
+        /// m
+        wavelength: f64,
+    },
+    /// h = (x - centre)^2 / (2 radius); radius > 0.
+    Parabola {
+        /// m
+        radius: f64,
+        /// m
+        centre: f64,
+    },
+    /// The exact arc of a circle; radius > 0.
+    Circle {
+        /// m
+        radius: f64,
+        /// m
+        centre: f64,
+    },
+    /// h = slope |x - centre|; slope > 0.
+    Wedge {
+        /// -
+        slope: f64,
+        /// m
+        centre: f64,
+    },
+}
+
+/// How non-penetration is enforced.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Contact {
+    /// Pa/m, > 0: p = -penalty * gap where gap < 0.
+    pub penalty: f64,
+    /// Where the interface element evaluates the laws.
+    pub quadrature: Quadrature,
+}
+
+/// Points of an interface element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Quadrature {
+    /// At the nodes.
+    Nodal,
+    /// Two Gauss points.
+    Gauss,
+}
+
+/// The friction law.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "law", rename_all = "snake_case")]
+pub enum Friction {
+    /// q = coefficient p tanh(slip_rate / regularisation), Eq. (4); coefficient >= 0, regularisation > 0.
+    CoulombTanh {
+        /// -
+        coefficient: f64,
+        /// m/s
+        regularisation: f64,
+    },
+}
+
+/// One phase of the loading history.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Phase {
+    /// Unique name, not empty.
+    pub name: String,
+    /// s, > 0; always resolved (from `distance` and `velocity` where the file says those).
+    pub duration: f64,
+    /// Equal steps, >= 1.
+    pub steps: usize,
+    /// Normal approach of the indenter at the end of the phase, m, linear in time; none = unchanged.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub approach: Option<f64>,
+    /// Tangential motion of the indenter.
+    #[serde(flatten)]
+    pub motion: Motion,
+}
+
+/// Tangential motion of the indenter over one phase, relative to where the phase found it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Motion {
+    /// Constant velocity along +x, m/s; may be 0 or negative.
+    Velocity(f64),
+    /// amplitude sin(2 pi cycles t / duration).
+    Tangential {
+        /// m
+        amplitude: f64,
+        /// > 0; need not be whole
+        cycles: f64,
+    },
+}
+
+/// How the scene is solved.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Solver {
+    /// Which form of the problem.
+    pub strategy: Strategy,
+    /// Relative, on the residual; in (0, 1).
+    pub tolerance: f64,
+}
+
+/// Which form of the problem is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Strategy {
+    /// The program picks, and says why.
+    Auto,
+    /// All unknowns.
+    Monolithic,
+}
+
+/// What is written.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Output {
+    /// Steps between stored interface profiles; 0 = only at the ends of phases.
+    pub interface_every: usize,
+    /// When bulk fields are written; empty = never.
+    pub bulk_at: Vec<When>,
+}
+
+/// A moment of the loading history.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum When {
+    /// The end of the phase of this name.
+    PhaseEnd(String),
+    /// s; a step ends there.
+    Time(f64),
+}
+
+/// Where a scene came from: the file and the `--set` overrides, for messages.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Source {
+    /// The scene file.
+    pub file: PathBuf,
+    /// `key.path=value` as typed, applied in order.
+    pub overrides: Vec<String>,
+}
