@@ -5,7 +5,7 @@ use std::path::PathBuf;
 /// The PETSc functions that `src/petsc` calls, and no others.
 const FUNCTIONS: &str = include_str!("src/petsc/functions.txt");
 
-fn main() {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo:rerun-if-changed=src/petsc/functions.txt");
     println!("cargo:rerun-if-changed=src/petsc/wrapper.h");
     println!("cargo:rerun-if-changed=.git/HEAD");
@@ -15,16 +15,15 @@ fn main() {
     let petsc = pkg_config::Config::new()
         .atleast_version("3.15")
         .probe("petsc")
-        .unwrap_or_else(|error| panic!("PETSc was not found; ci/packages.txt lists the Debian packages\n{error}"));
+        .map_err(|error| format!("PETSc was not found; ci/packages.txt lists the Debian packages\n{error}"))?;
     // petsc.pc names neither MPI's headers nor HDF5's.
     let include_only = |name: &str| {
-        pkg_config::Config::new()
-            .cargo_metadata(false)
-            .probe(name)
-            .unwrap_or_else(|error| panic!("{name} was not found; ci/packages.txt lists the Debian packages\n{error}"))
-            .include_paths
+        let library = pkg_config::Config::new().cargo_metadata(false).probe(name);
+        library
+            .map(|library| library.include_paths)
+            .map_err(|error| format!("{name} was not found; ci/packages.txt lists the Debian packages\n{error}"))
     };
-    let includes: Vec<PathBuf> = [petsc.include_paths, include_only("mpi-c"), include_only("hdf5-openmpi")].concat();
+    let includes = [petsc.include_paths, include_only("mpi-c")?, include_only("hdf5-openmpi")?].concat();
 
     let mut builder = bindgen::Builder::default()
         .header("src/petsc/wrapper.h")
@@ -46,12 +45,9 @@ fn main() {
             builder.allowlist_function(name)
         };
     }
-    let out = PathBuf::from(std::env::var("OUT_DIR").expect("cargo sets OUT_DIR")).join("petsc.rs");
-    builder
-        .generate()
-        .expect("bindgen reads PETSc's headers (libclang1-14 and libclang-common-14-dev are needed)")
-        .write_to_file(out)
-        .expect("OUT_DIR is writable");
+    // Reading the headers needs libclang1-14 and libclang-common-14-dev.
+    builder.generate()?.write_to_file(PathBuf::from(std::env::var("OUT_DIR")?).join("petsc.rs"))?;
+    Ok(())
 }
 
 /// The commit this build was made from, or "unknown" outside a checkout.

@@ -1,5 +1,14 @@
 //! Parallel transient viscoelastic contact with friction, by interface finite elements with embedded profiles (MPJR).
 
+pub mod bulk;
+pub mod element;
 pub mod error;
+pub mod friction;
+pub mod interface;
+pub mod loading;
+pub mod mesh;
+pub mod petsc;
+pub mod profile;
 pub mod rheology;
 pub mod scene;
+pub mod solve;

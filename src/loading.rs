@@ -1,0 +1,144 @@
+//! The loading history: where the indenter is at a given time of a given phase.
+
+use std::f64::consts::PI;
+
+/// The indenter's prescribed motion over one attempted step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Placement {
+    /// Normal approach D at the end of the step, m.
+    pub approach: f64,
+    /// Sliding s at the end of the step, m, along +x.
+    pub sliding: f64,
+    /// (s(t) - s(t - dt)) / dt, m/s: the rate that backward Euler sees.
+    pub sliding_rate: f64,
+}
+
+/// Tangential motion of one phase, relative to where the phase found the indenter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Motion {
+    /// m/s
+    Velocity(f64),
+    /// amplitude sin(2 pi cycles t / duration)
+    Sinusoid {
+        /// m
+        amplitude: f64,
+        /// -
+        cycles: f64,
+    },
+}
+
+/// One phase with its place in the history.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Phase {
+    /// Its name.
+    pub name: String,
+    /// When it begins, s.
+    pub start: f64,
+    /// s
+    pub duration: f64,
+    /// Approach at its beginning and end, m.
+    pub approach: [f64; 2],
+    /// Sliding at its beginning, m.
+    pub sliding: f64,
+    /// How it slides.
+    pub motion: Motion,
+    /// Where its steps end, and how long each is, s.
+    pub steps: Vec<Target>,
+}
+
+/// The end of a planned step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Target {
+    /// s
+    pub time: f64,
+    /// The planned length, s: bit for bit the same for all equal steps of a phase, so that what depends on it is kept.
+    pub dt: f64,
+}
+
+impl Phase {
+    /// When it ends, s.
+    pub fn end(&self) -> f64 {
+        self.start + self.duration
+    }
+
+    /// Where the indenter is at the end of a step of length `dt` that ends at `t`, s.
+    pub fn placement(&self, t: f64, dt: f64) -> Placement {
+        let [from, to] = self.approach;
+        let local = t - self.start;
+        let fraction = (local / self.duration).min(1.0);
+        let approach = from + (to - from) * fraction;
+        match self.motion {
+            Motion::Velocity(v) => Placement { approach, sliding: self.sliding + v * local, sliding_rate: v },
+            Motion::Sinusoid { amplitude, cycles } => {
+                let angular = 2.0 * PI * cycles / self.duration;
+                // sin a - sin b = 2 cos((a + b)/2) sin((a - b)/2) keeps the digits of short steps.
+                let middle = (angular * (local - dt / 2.0)).cos();
+                let half = angular * dt / 2.0;
+                Placement {
+                    approach,
+                    sliding: self.sliding + amplitude * (angular * local).sin(),
+                    sliding_rate: amplitude * 2.0 * middle * half.sin() / dt,
+                }
+            }
+        }
+    }
+
+    /// The sliding at its end, m.
+    pub fn final_sliding(&self) -> f64 {
+        self.placement(self.end(), self.duration).sliding
+    }
+}
+
+/// The ends of `steps` equal steps over a phase, and at the moments `extra` (s, absolute) inside it.
+pub fn targets(start: f64, duration: f64, steps: usize, extra: &[f64]) -> Vec<Target> {
+    let nominal = duration / steps as f64;
+    let mut extra: Vec<f64> = extra.iter().copied().filter(|&t| t > start && t < start + duration).collect();
+    extra.sort_by(f64::total_cmp);
+    let mut extra = extra.into_iter().peekable();
+    let mut list = Vec::with_capacity(steps);
+    let mut last = start;
+    for k in 1..=steps {
+        let end = start + duration * (k as f64 / steps as f64);
+        let near = 1e-9 * nominal;
+        let mut split = false;
+        while let Some(t) = extra.next_if(|&t| t < end + near) {
+            if t > last + near && t < end - near {
+                list.push(Target { time: t, dt: t - last });
+                last = t;
+                split = true;
+            }
+        }
+        list.push(Target { time: end, dt: if split { end - last } else { nominal } });
+        last = end;
+    }
+    list
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Equal steps have one length, bit for bit; an extra moment splits just its own step; the end is exact.
+    #[test]
+    fn targets_hit_every_moment() {
+        let list = targets(1.0, 0.7, 7, &[1.25, 0.5, 1.3, 9.0]);
+        assert_eq!(list.len(), 8);
+        assert_eq!(list.iter().filter(|target| target.dt == 0.7 / 7.0).count(), 6);
+        assert_eq!(list[2], Target { time: 1.25, dt: 1.25 - list[1].time });
+        assert_eq!(list[7].time, 1.0 + 0.7);
+    }
+
+    /// The sliding rate over a step is the difference quotient, also for a sinusoid.
+    #[test]
+    fn sliding_rate_is_the_difference_quotient() {
+        let motion = Motion::Sinusoid { amplitude: 2e-4, cycles: 1.25 };
+        let name = String::new();
+        let phase =
+            Phase { name, start: 2.0, duration: 3.0, approach: [0.0, 1.0], sliding: 0.4, motion, steps: vec![] };
+        let (t, dt) = (3.1, 0.05);
+        let (now, before) = (phase.placement(t, dt), phase.placement(t - dt, dt));
+        assert!((now.sliding_rate - (now.sliding - before.sliding) / dt).abs() < 1e-14);
+        assert!((phase.final_sliding() - (0.4 + 2e-4)).abs() < 1e-16);
+        assert!((now.approach - 1.1 / 3.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,172 @@
+//! Distributed sparse matrices of 2 x 2 node blocks.
+
+use std::mem::ManuallyDrop;
+use std::ptr::null_mut;
+
+use mpi::topology::AsCommunicator;
+use mpi::traits::AsRaw;
+use nalgebra::Matrix2;
+
+use super::error::check;
+use super::ffi;
+use super::vector::Vector;
+use crate::error::Result;
+
+/// How many 2 x 2 blocks each of this rank's node rows holds, split at the rank's own columns.
+pub struct Pattern {
+    /// Blocks in columns that this rank owns, per node row.
+    pub own: Vec<i32>,
+    /// Blocks in columns that other ranks own, per node row.
+    pub other: Vec<i32>,
+}
+
+/// A square sparse matrix with two unknowns per node; rows are distributed like the vectors.
+pub struct Matrix {
+    raw: ffi::Mat,
+}
+
+impl Matrix {
+    /// An empty matrix whose rows on this rank hold the blocks that `pattern` counts.
+    pub fn new(comm: &impl AsCommunicator, pattern: &Pattern) -> Result<Self> {
+        let local = 2 * pattern.own.len() as ffi::PetscInt;
+        let mut raw = null_mut();
+        // SAFETY: a live communicator and a place for the handle; the counts have one entry per local block row.
+        unsafe {
+            check(ffi::MatCreate(comm.as_communicator().as_raw(), &mut raw))?;
+            let matrix = Self { raw };
+            check(ffi::MatSetSizes(raw, local, local, -1, -1))?;
+            check(ffi::MatSetType(raw, c"aij".as_ptr()))?;
+            let (own, other) = (pattern.own.as_ptr(), pattern.other.as_ptr());
+            check(ffi::MatXAIJSetPreallocation(raw, 2, own, other, std::ptr::null(), std::ptr::null()))?;
+            Ok(matrix)
+        }
+    }
+
+    /// A view of a matrix that PETSc owns; never destroyed from here.
+    pub(super) fn borrow(raw: ffi::Mat) -> ManuallyDrop<Self> {
+        ManuallyDrop::new(Self { raw })
+    }
+
+    pub(super) fn raw(&self) -> ffi::Mat {
+        self.raw
+    }
+
+    /// A matrix of the same pattern with the same values.
+    pub fn duplicate(&self) -> Result<Self> {
+        let mut raw = null_mut();
+        // SAFETY: a live matrix and a place for the handle.
+        unsafe { check(ffi::MatDuplicate(self.raw, ffi::MatDuplicateOption_MAT_COPY_VALUES, &mut raw))? };
+        Ok(Self { raw })
+    }
+
+    /// Adds the dense `values` (row-major, 2n x 2n) at the block rows and columns of `nodes` (global). Not collective;
+    /// [`Self::assemble`] afterwards.
+    pub fn add_blocks(&mut self, nodes: &[i32], values: &[f64]) -> Result<()> {
+        debug_assert_eq!(values.len(), 4 * nodes.len() * nodes.len());
+        let count = nodes.len() as ffi::PetscInt;
+        // SAFETY: `count` block rows and columns and their values.
+        check(unsafe {
+            ffi::MatSetValuesBlocked(
+                self.raw,
+                count,
+                nodes.as_ptr(),
+                count,
+                nodes.as_ptr(),
+                values.as_ptr(),
+                ffi::InsertMode_ADD_VALUES,
+            )
+        })
+    }
+
+    /// Replaces one block. Not collective; [`Self::assemble`] afterwards.
+    pub fn insert_block(&mut self, row: i32, column: i32, block: &Matrix2<f64>) -> Result<()> {
+        let values = [block[(0, 0)], block[(0, 1)], block[(1, 0)], block[(1, 1)]];
+        // SAFETY: one block row, one block column and four values.
+        check(unsafe {
+            ffi::MatSetValuesBlocked(self.raw, 1, &row, 1, &column, values.as_ptr(), ffi::InsertMode_INSERT_VALUES)
+        })
+    }
+
+    /// One block of a row that this rank owns; zero where the pattern has none. Not collective.
+    pub fn block(&self, row: i32, column: i32) -> Result<Matrix2<f64>> {
+        let (rows, columns) = ([2 * row, 2 * row + 1], [2 * column, 2 * column + 1]);
+        let mut values = [0.0; 4];
+        // SAFETY: two rows, two columns and a place for four values.
+        unsafe {
+            check(ffi::MatGetValues(self.raw, 2, rows.as_ptr(), 2, columns.as_ptr(), values.as_mut_ptr()))?;
+        }
+        Ok(Matrix2::from_row_slice(&values))
+    }
+
+    /// Makes what was added or inserted part of the matrix.
+    pub fn assemble(&mut self) -> Result<()> {
+        // SAFETY: a live matrix.
+        unsafe {
+            check(ffi::MatAssemblyBegin(self.raw, ffi::MatAssemblyType_MAT_FINAL_ASSEMBLY))?;
+            check(ffi::MatAssemblyEnd(self.raw, ffi::MatAssemblyType_MAT_FINAL_ASSEMBLY))
+        }
+    }
+
+    /// Clears the rows and columns of the unknowns `fixed` (global) and puts `diagonal` on their diagonal.
+    pub fn fix(&mut self, fixed: &[i32], diagonal: f64) -> Result<()> {
+        let count = fixed.len() as ffi::PetscInt;
+        // SAFETY: `count` indices; no right-hand side to adapt.
+        check(unsafe { ffi::MatZeroRowsColumns(self.raw, count, fixed.as_ptr(), diagonal, null_mut(), null_mut()) })
+    }
+
+    /// y = self x.
+    pub fn multiply(&self, x: &Vector, y: &mut Vector) -> Result<()> {
+        // SAFETY: live objects; x and y differ because y is borrowed mutably.
+        check(unsafe { ffi::MatMult(self.raw, x.raw(), y.raw()) })
+    }
+
+    /// self = x, which has the same pattern.
+    pub fn copy_from(&mut self, x: &Self) -> Result<()> {
+        // SAFETY: two live matrices of one pattern.
+        check(unsafe { ffi::MatCopy(x.raw, self.raw, ffi::MatStructure_SAME_NONZERO_PATTERN) })
+    }
+
+    /// self += a x, which has the same pattern.
+    pub fn add(&mut self, a: f64, x: &Self) -> Result<()> {
+        // SAFETY: two live matrices of one pattern.
+        check(unsafe { ffi::MatAXPY(self.raw, a, x.raw, ffi::MatStructure_SAME_NONZERO_PATTERN) })
+    }
+
+    /// self *= a.
+    pub fn scale(&mut self, a: f64) -> Result<()> {
+        // SAFETY: a live matrix.
+        check(unsafe { ffi::MatScale(self.raw, a) })
+    }
+
+    /// Declares the matrix symmetric positive definite, so that symmetric factorisations take it.
+    pub fn declare_positive_definite(&mut self) -> Result<()> {
+        let yes = ffi::PetscBool_PETSC_TRUE;
+        // SAFETY: a live matrix.
+        unsafe {
+            check(ffi::MatSetOption(self.raw, ffi::MatOption_MAT_SYMMETRIC, yes))?;
+            check(ffi::MatSetOption(self.raw, ffi::MatOption_MAT_SYMMETRY_ETERNAL, yes))?;
+            check(ffi::MatSetOption(self.raw, ffi::MatOption_MAT_SPD, yes))?;
+            check(ffi::MatSetOption(self.raw, ffi::MatOption_MAT_SPD_ETERNAL, yes))
+        }
+    }
+
+    /// Gives algebraic multigrid the rigid-body modes; `coordinates` holds x, z of each local node.
+    pub fn set_near_null_space(&mut self, coordinates: &mut Vector) -> Result<()> {
+        let mut space = null_mut();
+        // SAFETY: a live vector with block size 2; the matrix takes a reference and ours is dropped.
+        unsafe {
+            check(ffi::VecSetBlockSize(coordinates.raw(), 2))?;
+            check(ffi::MatNullSpaceCreateRigidBody(coordinates.raw(), &mut space))?;
+            let code = ffi::MatSetNearNullSpace(self.raw, space);
+            ffi::MatNullSpaceDestroy(&mut space);
+            check(code)
+        }
+    }
+}
+
+impl Drop for Matrix {
+    fn drop(&mut self) {
+        // SAFETY: this handle owns the matrix.
+        unsafe { ffi::MatDestroy(&mut self.raw) };
+    }
+}

@@ -1,0 +1,19 @@
+//! Thin safe wrappers of PETSc: the only `unsafe` of the crate.
+//!
+//! A handle owns its object and destroys it when dropped; every code is checked; what PETSc says of a failure becomes
+//! the text of an [`Error`](crate::error::Error). Everything here is collective over the communicator of its objects
+//! unless it says otherwise.
+
+mod error;
+mod ffi;
+mod matrix;
+mod partition;
+mod session;
+mod transient;
+mod vector;
+
+pub use matrix::{Matrix, Pattern};
+pub use partition::partition;
+pub use session::{Session, blas_library, peak_memory};
+pub use transient::{Accepted, Implicit, Integrator, Next, Settings, Step, Verdict};
+pub use vector::{Gather, Vector};

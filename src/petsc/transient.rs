@@ -1,0 +1,305 @@
+//! PETSc TS (backward Euler) and SNES (Newton with line search) around a problem written in Rust.
+
+use std::os::raw::c_void;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::ptr::null_mut;
+
+use mpi::topology::AsCommunicator;
+use mpi::traits::AsRaw;
+
+use super::error::{USER_ERROR, check};
+use super::ffi;
+use super::matrix::Matrix;
+use super::vector::Vector;
+use crate::error::{Error, Result};
+
+/// One attempted step: it ends at `t` and is `dt` long, s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Step {
+    /// The end of the step.
+    pub t: f64,
+    /// Its length.
+    pub dt: f64,
+}
+
+/// A step that was accepted.
+#[derive(Debug, Clone, Copy)]
+pub struct Accepted {
+    /// The step.
+    pub step: Step,
+    /// Newton iterations it took, those of rejected attempts included.
+    pub newton: usize,
+}
+
+/// What follows an accepted step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Next {
+    /// A step of length `dt` from the time `now`: the exact value of the accepted step's end, which sums of dt miss by
+    /// round-off.
+    Step {
+        /// s
+        now: f64,
+        /// s
+        dt: f64,
+    },
+    /// The end.
+    Stop,
+}
+
+/// What the convergence test says of a Newton iterate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Iterate on.
+    Iterate,
+    /// Accept the iterate.
+    Converged,
+    /// Give the step up: it is cut and tried again.
+    Diverged,
+}
+
+/// F(t, u, du/dt) = 0, as TS's implicit form wants it.
+///
+/// Between two calls of [`Self::accepted`] every other method is a pure function of its arguments and of the state at
+/// the last accepted step. An [`Error::Domain`] makes the step fail and be cut; any other error ends the solve. All
+/// ranks must return the same kind of result from the same call.
+pub trait Implicit {
+    /// f = F(t, u, rate).
+    fn residual(&mut self, step: Step, u: &Vector, rate: &Vector, f: &mut Vector) -> Result<()>;
+    /// jacobian = dF/du + (1/dt) dF/d(rate).
+    fn jacobian(&mut self, step: Step, u: &Vector, rate: &Vector, jacobian: &mut Matrix) -> Result<()>;
+    /// Judges the Newton iterate whose residual norm is `norm`.
+    fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
+    /// Takes note of an accepted step that ends at `u`.
+    fn accepted(&mut self, accepted: Accepted, u: &Vector) -> Result<Next>;
+}
+
+/// How the nonlinear system is solved, unless PETSc options say otherwise.
+#[derive(Debug, Clone, Copy)]
+pub struct Settings {
+    /// The tangent is symmetric positive definite: factorise by Cholesky, else by LU.
+    pub symmetric: bool,
+    /// Newton iterations per attempt before the step is cut.
+    pub max_newton: usize,
+    /// How often a step may be cut (by four each time) before the solve fails.
+    pub max_cuts: usize,
+}
+
+/// A TS with its SNES, KSP and PC.
+pub struct Integrator {
+    ts: ffi::TS,
+}
+
+/// What the callbacks reach through PETSc's context pointer.
+struct Context<'a, P> {
+    problem: &'a mut P,
+    step: Step,
+    newton: usize,
+    error: Option<Error>,
+}
+
+impl Integrator {
+    /// Backward Euler with Newton's method and a direct solver (MUMPS), changed by whatever PETSc options are set.
+    pub fn new(comm: &impl AsCommunicator, settings: Settings) -> Result<Self> {
+        let mut ts = null_mut();
+        let (mut snes, mut search, mut ksp, mut pc) = (null_mut(), null_mut(), null_mut(), null_mut());
+        // SAFETY: places for the handles; those got from TS stay TS's own.
+        unsafe {
+            check(ffi::TSCreate(comm.as_communicator().as_raw(), &mut ts))?;
+            let integrator = Self { ts };
+            check(ffi::TSSetProblemType(ts, ffi::TSProblemType_TS_NONLINEAR))?;
+            check(ffi::TSSetType(ts, c"beuler".as_ptr()))?;
+            check(ffi::TSSetExactFinalTime(ts, ffi::TSExactFinalTimeOption_TS_EXACTFINALTIME_STEPOVER))?;
+            check(ffi::TSSetMaxTime(ts, f64::MAX))?;
+            check(ffi::TSSetMaxSteps(ts, i32::MAX))?;
+            check(ffi::TSSetMaxSNESFailures(ts, -1))?;
+            check(ffi::TSSetMaxStepRejections(ts, settings.max_cuts as i32))?;
+            let mut adapt = null_mut();
+            check(ffi::TSGetAdapt(ts, &mut adapt))?;
+            check(ffi::TSAdaptSetType(adapt, c"none".as_ptr()))?;
+            check(ffi::TSGetSNES(ts, &mut snes))?;
+            check(ffi::SNESSetTolerances(snes, 0.0, 0.0, 0.0, settings.max_newton as i32, -1))?;
+            check(ffi::SNESGetLineSearch(snes, &mut search))?;
+            check(ffi::SNESLineSearchSetType(search, c"bt".as_ptr()))?;
+            check(ffi::SNESGetKSP(snes, &mut ksp))?;
+            check(ffi::KSPSetType(ksp, c"preonly".as_ptr()))?;
+            check(ffi::KSPGetPC(ksp, &mut pc))?;
+            check(ffi::PCSetType(pc, if settings.symmetric { c"cholesky".as_ptr() } else { c"lu".as_ptr() }))?;
+            check(ffi::PCFactorSetMatSolverType(pc, c"mumps".as_ptr()))?;
+            check(ffi::TSSetFromOptions(ts))?;
+            Ok(integrator)
+        }
+    }
+
+    /// Steps `problem` from `u` at `start` (its first step) until it says stop. `jacobian` is the matrix its tangent
+    /// is written to, `u` holds the last accepted state afterwards.
+    ///
+    /// # Errors
+    /// What the problem returned, or [`Error::Solver`] when a step failed after the allowed cuts.
+    pub fn solve<P: Implicit>(
+        &mut self,
+        problem: &mut P,
+        jacobian: &mut Matrix,
+        u: &mut Vector,
+        start: Step,
+    ) -> Result<()> {
+        let mut context = Context { problem, step: start, newton: 0, error: None };
+        let pointer = (&raw mut context).cast::<c_void>();
+        let (ts, mut snes, mut reason) = (self.ts, null_mut(), 0);
+        // SAFETY: `context` outlives TSSolve, the only call that runs the callbacks; PETSc gives each callback the
+        // pointer it was set with, and runs one callback at a time.
+        let code = unsafe {
+            check(ffi::TSSetIFunction(ts, null_mut(), Some(residual::<P>), pointer))?;
+            check(ffi::TSSetIJacobian(ts, jacobian.raw(), jacobian.raw(), Some(tangent::<P>), pointer))?;
+            check(ffi::TSSetApplicationContext(ts, pointer))?;
+            check(ffi::TSSetPostStep(ts, Some(post_step::<P>)))?;
+            check(ffi::TSGetSNES(ts, &mut snes))?;
+            check(ffi::SNESSetConvergenceTest(snes, Some(convergence::<P>), pointer, None))?;
+            check(ffi::TSSetTime(ts, start.t - start.dt))?;
+            check(ffi::TSSetTimeStep(ts, start.dt))?;
+            let code = ffi::TSSolve(ts, u.raw());
+            ffi::TSGetConvergedReason(ts, &mut reason);
+            code
+        };
+        if let Some(error) = context.error {
+            // The trace only says that a callback failed.
+            let _ = check(code);
+            return Err(error);
+        }
+        check(code)?;
+        if reason < 0 {
+            return Err(Error::Solver(format!(
+                "no convergence in the step to t = {:.6e} s, cut down to {:.3e} s",
+                context.step.t, context.step.dt
+            )));
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Integrator {
+    fn drop(&mut self) {
+        // SAFETY: this handle owns the TS.
+        unsafe { ffi::TSDestroy(&mut self.ts) };
+    }
+}
+
+/// Runs a callback's body: keeps its error or panic in the context, and returns a code that stops PETSc.
+///
+/// # Safety
+/// `pointer` is the context that [`Integrator::solve`] set for the same `P`.
+unsafe fn guarded<P: Implicit>(
+    pointer: *mut c_void,
+    body: impl FnOnce(&mut Context<'_, P>) -> Result<()>,
+) -> ffi::PetscErrorCode {
+    // SAFETY: by the contract above; no other reference to the context is live while PETSc runs a callback.
+    let context = unsafe { &mut *pointer.cast::<Context<'_, P>>() };
+    let outcome = catch_unwind(AssertUnwindSafe(|| body(context)))
+        .unwrap_or_else(|_| Err(Error::Internal("a callback panicked".into())));
+    match outcome {
+        Ok(()) => 0,
+        Err(error) => {
+            context.error.get_or_insert(error);
+            USER_ERROR
+        }
+    }
+}
+
+/// The step that TS is attempting, which ends at `t`.
+fn attempted(ts: ffi::TS, t: f64) -> Result<Step> {
+    let mut dt = 0.0;
+    // SAFETY: a live TS and a place for the number.
+    unsafe { check(ffi::TSGetTimeStep(ts, &mut dt))? };
+    Ok(Step { t, dt })
+}
+
+unsafe extern "C" fn residual<P: Implicit>(
+    ts: ffi::TS,
+    t: f64,
+    u: ffi::Vec,
+    rate: ffi::Vec,
+    f: ffi::Vec,
+    pointer: *mut c_void,
+) -> ffi::PetscErrorCode {
+    // SAFETY: the pointer is the context of `solve`; the vectors are PETSc's own, lent for the call.
+    unsafe {
+        guarded::<P>(pointer, |context| {
+            context.step = attempted(ts, t)?;
+            let mut f = Vector::borrow(f);
+            match context.problem.residual(context.step, &Vector::borrow(u), &Vector::borrow(rate), &mut f) {
+                Err(Error::Domain(_)) => {
+                    let mut snes = null_mut();
+                    check(ffi::TSGetSNES(ts, &mut snes))?;
+                    check(ffi::SNESSetFunctionDomainError(snes))
+                }
+                other => other,
+            }
+        })
+    }
+}
+
+unsafe extern "C" fn tangent<P: Implicit>(
+    ts: ffi::TS,
+    t: f64,
+    u: ffi::Vec,
+    rate: ffi::Vec,
+    _shift: f64,
+    _jacobian: ffi::Mat,
+    matrix: ffi::Mat,
+    pointer: *mut c_void,
+) -> ffi::PetscErrorCode {
+    // SAFETY: as for `residual`.
+    unsafe {
+        guarded::<P>(pointer, |context| {
+            let step = attempted(ts, t)?;
+            let mut matrix = Matrix::borrow(matrix);
+            context.problem.jacobian(step, &Vector::borrow(u), &Vector::borrow(rate), &mut matrix)
+        })
+    }
+}
+
+unsafe extern "C" fn convergence<P: Implicit>(
+    snes: ffi::SNES,
+    iteration: ffi::PetscInt,
+    _xnorm: f64,
+    _snorm: f64,
+    _fnorm: f64,
+    reason: *mut ffi::SNESConvergedReason,
+    pointer: *mut c_void,
+) -> ffi::PetscErrorCode {
+    // SAFETY: as for `residual`; `reason` is a place for the answer.
+    unsafe {
+        guarded::<P>(pointer, |context| {
+            let mut norm = 0.0;
+            check(ffi::SNESGetFunctionNorm(snes, &mut norm))?;
+            if iteration > 0 {
+                context.newton += 1;
+            }
+            *reason = match context.problem.test(iteration as usize, norm) {
+                Verdict::Iterate => ffi::SNESConvergedReason_SNES_CONVERGED_ITERATING,
+                Verdict::Converged => ffi::SNESConvergedReason_SNES_CONVERGED_FNORM_RELATIVE,
+                Verdict::Diverged => ffi::SNESConvergedReason_SNES_DIVERGED_FNORM_NAN,
+            };
+            Ok(())
+        })
+    }
+}
+
+unsafe extern "C" fn post_step<P: Implicit>(ts: ffi::TS) -> ffi::PetscErrorCode {
+    let mut pointer: *mut c_void = null_mut();
+    // SAFETY: a live TS whose application context is that of `solve`; TS lends its solution for the call.
+    unsafe {
+        ffi::TSGetApplicationContext(ts, (&raw mut pointer).cast::<c_void>());
+        guarded::<P>(pointer, |context| {
+            let mut u = null_mut();
+            check(ffi::TSGetSolution(ts, &mut u))?;
+            let accepted = Accepted { step: context.step, newton: std::mem::take(&mut context.newton) };
+            match context.problem.accepted(accepted, &Vector::borrow(u))? {
+                Next::Step { now, dt } => {
+                    check(ffi::TSSetTime(ts, now))?;
+                    check(ffi::TSSetTimeStep(ts, dt))
+                }
+                Next::Stop => check(ffi::TSSetConvergedReason(ts, ffi::TSConvergedReason_TS_CONVERGED_USER)),
+            }
+        })
+    }
+}

@@ -1,0 +1,119 @@
+//! Steps a problem through its loading history under PETSc's TS.
+
+use mpi::topology::SimpleCommunicator;
+
+use super::{Observer, Report, TransientProblem};
+use crate::error::{Error, Result};
+use crate::loading::Phase;
+use crate::petsc::{Accepted, Implicit, Integrator, Matrix, Next, Settings, Step, Vector, Verdict};
+
+/// What the driver may do to get through a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Newton iterations per attempt.
+    pub max_newton: usize,
+    /// How often a step may be cut by four.
+    pub max_cuts: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { max_newton: 30, max_cuts: 8 }
+    }
+}
+
+/// A problem on its way through its phases.
+pub struct Driver<'a> {
+    problem: &'a mut dyn TransientProblem,
+    observer: &'a mut dyn Observer,
+    phases: &'a [Phase],
+    phase: usize,
+    target: usize,
+    /// The end of the last accepted step, s.
+    now: f64,
+}
+
+impl<'a> Driver<'a> {
+    /// A driver at the beginning of the history.
+    pub fn new(problem: &'a mut dyn TransientProblem, observer: &'a mut dyn Observer, phases: &'a [Phase]) -> Self {
+        Self { problem, observer, phases, phase: 0, target: 0, now: 0.0 }
+    }
+
+    /// Runs the whole history from rest; `u` ends as the last accepted state.
+    ///
+    /// # Errors
+    /// [`Error::Solver`] when a step fails after all cuts; what was accepted before has been observed.
+    pub fn run(
+        mut self,
+        comm: &SimpleCommunicator,
+        settings: Settings,
+        tangent: &mut Matrix,
+        u: &mut Vector,
+    ) -> Result<()> {
+        let Some(first) = self.phases.first() else { return Ok(()) };
+        let start = Step { t: first.steps[0].time, dt: first.steps[0].dt };
+        self.problem.begin(first.clone());
+        let report =
+            Report { phase: 0, time: 0.0, planned: true, phase_end: false, newton: 0, problem: &mut *self.problem, u };
+        self.observer.observe(report)?;
+        let outcome = Integrator::new(comm, settings)?.solve(&mut self, tangent, u, start);
+        outcome.map_err(|error| match error {
+            Error::Solver(text) => Error::Solver(format!("phase {:?}: {text}", self.phases[self.phase].name)),
+            other => other,
+        })
+    }
+
+    /// The step after one that ended at `now` and was `dt` long.
+    fn next(&mut self, dt: f64) -> Next {
+        let target = self.phases[self.phase].steps[self.target];
+        let remaining = target.time - self.now;
+        if remaining > 1e-9 * target.dt {
+            // Inside a planned step that was cut: grow back by two.
+            return Next::Step { now: self.now, dt: remaining.min(2.0 * dt) };
+        }
+        self.now = target.time;
+        self.target += 1;
+        if self.target == self.phases[self.phase].steps.len() {
+            self.target = 0;
+            self.phase += 1;
+            match self.phases.get(self.phase) {
+                Some(phase) => self.problem.begin(phase.clone()),
+                None => return Next::Stop,
+            }
+        }
+        Next::Step { now: self.now, dt: self.phases[self.phase].steps[self.target].dt }
+    }
+}
+
+impl Implicit for Driver<'_> {
+    fn residual(&mut self, step: Step, u: &Vector, rate: &Vector, f: &mut Vector) -> Result<()> {
+        self.problem.residual(step, u, rate, f)
+    }
+
+    fn jacobian(&mut self, step: Step, u: &Vector, rate: &Vector, jacobian: &mut Matrix) -> Result<()> {
+        self.problem.tangent(step, u, rate, jacobian)
+    }
+
+    fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
+        self.problem.test(iteration, norm)
+    }
+
+    fn accepted(&mut self, accepted: Accepted, u: &Vector) -> Result<Next> {
+        self.problem.commit(accepted.step, u)?;
+        let phase = self.phase;
+        let end = self.phases[phase].steps[self.target].time;
+        self.now = accepted.step.t;
+        let next = self.next(accepted.step.dt);
+        let report = Report {
+            phase,
+            time: self.now,
+            planned: self.now == end,
+            phase_end: self.phase != phase,
+            newton: accepted.newton,
+            problem: &mut *self.problem,
+            u,
+        };
+        self.observer.observe(report)?;
+        Ok(next)
+    }
+}

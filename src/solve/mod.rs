@@ -1,0 +1,92 @@
+//! Solving the transient problem: what a strategy must offer, and the driver that steps it.
+
+mod body;
+mod driver;
+mod monolithic;
+
+use crate::error::Result;
+use crate::interface::{Fields, Interface, Surface, Totals};
+use crate::loading::{Phase, Placement};
+use crate::petsc::{Matrix, Step, Vector, Verdict};
+
+pub use body::{Body, Moduli};
+pub use driver::{Driver, Limits};
+pub use monolithic::Monolithic;
+
+/// A discretised contact problem in a form that TS and SNES can step.
+///
+/// Residual and tangent are pure functions of the accepted state and their arguments; [`Self::commit`] is the only
+/// method that moves the accepted state. All ranks call each method together.
+pub trait TransientProblem {
+    /// What the following steps are driven by.
+    fn begin(&mut self, phase: Phase);
+    /// f = F(t, u, rate), N/m.
+    fn residual(&mut self, step: Step, u: &Vector, rate: &Vector, f: &mut Vector) -> Result<()>;
+    /// tangent = dF/du + (1/dt) dF/d(rate).
+    fn tangent(&mut self, step: Step, u: &Vector, rate: &Vector, tangent: &mut Matrix) -> Result<()>;
+    /// Judges a Newton iterate by the norm of its residual.
+    fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
+    /// Takes the accepted state to the end of an accepted step.
+    fn commit(&mut self, step: Step, u: &Vector) -> Result<()>;
+    /// The contact at the accepted state.
+    fn contact(&mut self) -> Result<Contact<'_>>;
+    /// The bulk fields at the accepted state `u`.
+    fn bulk_fields(&mut self, u: &Vector) -> Result<BulkFields>;
+}
+
+/// The contact face at an accepted state.
+pub struct Contact<'a> {
+    /// The laws on the face.
+    pub interface: &'a mut Interface,
+    /// Where the indenter is.
+    pub placement: Placement,
+    /// The face.
+    pub surface: &'a Surface,
+}
+
+impl Contact<'_> {
+    /// The integrals over the face.
+    pub fn totals(&mut self) -> Result<Totals> {
+        self.interface.totals(self.placement, self.surface)
+    }
+
+    /// The fields at the face's nodes.
+    pub fn fields(&mut self) -> Result<Fields> {
+        self.interface.fields(self.placement, self.surface)
+    }
+}
+
+/// Nodal fields of the body on this rank.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct BulkFields {
+    /// Mesh nodes that this rank supplies.
+    pub nodes: Vec<u32>,
+    /// Displacement x, z, m.
+    pub displacement: Vec<[f64; 2]>,
+    /// Stress xx, zz, yy, xz, Pa, tension positive.
+    pub stress: Vec<[f64; 4]>,
+}
+
+/// What the driver tells of each accepted step, and of the unloaded state before the first.
+pub trait Observer {
+    /// Called on all ranks after each accepted step.
+    fn observe(&mut self, report: Report<'_>) -> Result<()>;
+}
+
+/// An accepted state.
+pub struct Report<'a> {
+    /// Index of the phase.
+    pub phase: usize,
+    /// s
+    pub time: f64,
+    /// Whether this is where a planned step ends, rather than a piece of one that was cut.
+    pub planned: bool,
+    /// Whether the phase ends here.
+    pub phase_end: bool,
+    /// Newton iterations of the step.
+    pub newton: usize,
+    /// The problem, to be asked for fields.
+    pub problem: &'a mut dyn TransientProblem,
+    /// The solution.
+    pub u: &'a Vector,
+}
