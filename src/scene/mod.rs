@@ -3,9 +3,18 @@
 //! The only place that knows a key's name. All quantities are SI; every number here is finite and within the range
 //! its field states, because [`read`] refuses a file that says otherwise.
 
+mod checks;
+mod keys;
+mod overrides;
+mod read;
+mod resolved;
+
 use std::path::PathBuf;
 
 use serde::Serialize;
+
+pub use overrides::set;
+pub use read::{from_table, parse, read};
 
 /// One scene: the layer, its material, the indenter, the contact, the loading history, and what to keep of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,0 +1,158 @@
+//! What the parts of a scene have to do with one another: physics and size, not format. Each check is visible whole;
+//! each error is the key and the reason.
+
+use std::path::Path;
+
+use super::{Arm, Indenter, Layer, Phase, Scene, Sides, When, keys};
+use crate::error::{Error, Result};
+
+/// The key and what is wrong with it.
+type Check = std::result::Result<(), (String, String)>;
+
+/// Everything that takes more than one table to see.
+pub(super) fn all(scene: &Scene, file: &Path) -> Result<()> {
+    shear_modulus(scene)
+        .and_then(|()| size(&scene.layer))
+        .and_then(|()| period(&scene.layer, &scene.indenter))
+        .and_then(|()| times(&scene.phases))
+        .and_then(|()| scene.phases.iter().try_for_each(|phase| approach(phase, scene)))
+        .and_then(|()| moments(&scene.output.bulk_at, &scene.phases))
+        .map_err(|(key, reason)| Error::scene(file, key, reason))
+}
+
+/// G = E / (2 (1 + nu)), Pa.
+pub(super) fn shear_from_young(young: f64, poisson_ratio: f64) -> f64 {
+    young / (2.0 * (1.0 + poisson_ratio))
+}
+
+/// The arms take at most the whole modulus; taking all of it makes a Maxwell fluid.
+pub(super) fn weights(arms: &[Arm]) -> std::result::Result<(), String> {
+    let sum: f64 = arms.iter().map(|arm| arm.weight).sum();
+    match sum <= 1.0 + 1e-12 {
+        true => Ok(()),
+        false => Err(format!("the weights must sum to at most 1, got {}", short(sum))),
+    }
+}
+
+/// A modulus from Young's can leave the range of numbers where that did not.
+fn shear_modulus(scene: &Scene) -> Check {
+    match scene.material.shear_modulus {
+        modulus if modulus.is_finite() && modulus > 0.0 => Ok(()),
+        modulus => fail("material.young_modulus", format!("gives a shear modulus of {modulus:?} Pa; give another")),
+    }
+}
+
+/// PETSc counts unknowns and matrix entries, about 18 to a row, with 32 bits.
+fn size(layer: &Layer) -> Check {
+    const MOST: f64 = 1e8;
+    let [along, through] = layer.cells;
+    let unknowns = 2.0 * (along as f64 + 1.0) * (through as f64 + 1.0);
+    if unknowns > MOST {
+        let reason =
+            format!("{along} x {through} cells make {unknowns:.2e} unknowns; at most {MOST:e} can be solved for");
+        return fail("layer.cells", reason);
+    }
+    match layer.sides {
+        Sides::Periodic | Sides::Fixed if along < 2 => {
+            fail("layer.cells", "must have at least 2 cells along the face under periodic or fixed sides, got 1")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Under periodic sides the profile has the period of the layer. The harmonic profile must have it by itself; any
+/// other is taken from its nearest image.
+fn period(layer: &Layer, indenter: &Indenter) -> Check {
+    let (Sides::Periodic, Indenter::Harmonic { wavelength, .. }) = (layer.sides, indenter) else { return Ok(()) };
+    let waves = layer.width / wavelength;
+    if waves.round() >= 1.0 && (waves - waves.round()).abs() <= 1e-9 * waves.round() {
+        return Ok(());
+    }
+    let nearest: Vec<String> = [waves.floor(), waves.ceil()]
+        .into_iter()
+        .filter(|waves| *waves >= 1.0)
+        .map(|waves| format!("{} m", short(waves * wavelength)))
+        .collect();
+    let reason = format!(
+        "must be a whole number of wavelengths ({wavelength:?} m) under periodic sides, got {:?} m; nearest: {}",
+        layer.width,
+        nearest.join(" or ")
+    );
+    fail("layer.width", reason)
+}
+
+/// Every step moves the clock, the clock stays a number, and PETSc can count the steps.
+fn times(phases: &[Phase]) -> Check {
+    const MOST: usize = 2_000_000_000;
+    let mut start = 0.0;
+    let mut before = 0;
+    for phase in phases {
+        let (end, step) = (start + phase.duration, phase.duration / phase.steps as f64);
+        let key = format!("phase.{}.duration", phase.name);
+        if !(phase.duration > 0.0 && end.is_finite()) {
+            return fail(&key, format!("must be a positive time in s that can be counted, got {:?}", phase.duration));
+        }
+        if phase.steps > MOST - before {
+            let reason = format!(
+                "the history can have at most {MOST} steps, got {} more than that",
+                phase.steps - (MOST - before)
+            );
+            return fail(&format!("phase.{}.steps", phase.name), reason);
+        }
+        // Far from the round-off of the clock, so that the step itself keeps some digits.
+        if step <= 1e-12 * end {
+            let reason =
+                format!("its steps of {step:.1e} s are lost beside the {end:.1e} s before its end; take fewer");
+            return fail(&key, reason);
+        }
+        start = end;
+        before += phase.steps;
+    }
+    Ok(())
+}
+
+/// The indenter neither passes the clamped face nor, as a circle, sinks in to its centre.
+fn approach(phase: &Phase, scene: &Scene) -> Check {
+    let Some(approach) = phase.approach else { return Ok(()) };
+    let key = format!("phase.{}.approach", phase.name);
+    let depth = scene.layer.depth;
+    match scene.indenter {
+        _ if approach >= depth => {
+            fail(&key, format!("must be less than the depth of the layer ({depth:?} m), got {approach:?}"))
+        }
+        Indenter::Circle { radius, .. } if approach >= radius => {
+            fail(&key, format!("must be less than the radius of the circle ({radius:?} m), got {approach:?}"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The moments are in the history, each once.
+fn moments(moments: &[When], phases: &[Phase]) -> Check {
+    let names: Vec<&str> = phases.iter().map(|phase| phase.name.as_str()).collect();
+    let end: f64 = phases.iter().map(|phase| phase.duration).sum();
+    for (index, moment) in moments.iter().enumerate() {
+        let key = format!("output.bulk_at.{index}");
+        match moment {
+            When::PhaseEnd(name) if !names.contains(&name.as_str()) => {
+                return fail(&key, format!("no phase {name:?}; {}", keys::advice(name, &names, "the phases are")));
+            }
+            // A sum of durations may fall short of what it means by round-off.
+            When::Time(time) if *time > end * (1.0 + 1e-9) => {
+                return fail(&key, format!("must be a time within the history, up to {end:?} s, got {time:?}"));
+            }
+            _ if moments[..index].contains(moment) => return fail(&key, "is in the list already"),
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+fn fail(key: &str, reason: impl Into<String>) -> Check {
+    Err((key.to_owned(), reason.into()))
+}
+
+/// A number for a message, without the last digits that only round-off put there.
+fn short(value: f64) -> String {
+    format!("{:?}", format!("{value:.10e}").parse().unwrap_or(value))
+}

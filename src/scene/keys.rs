@@ -1,0 +1,270 @@
+//! A table of the scene while it is read: typed access by key, with messages that name the dotted path of the key,
+//! what is wrong and what would be accepted. It knows TOML, not scenes.
+
+use std::ops::RangeInclusive;
+use std::path::Path;
+
+use toml::{Table, Value};
+
+use crate::error::{Error, Result};
+
+/// What a number must be, besides finite.
+#[derive(Clone, Copy)]
+pub(super) struct Quantity {
+    /// Completes "must be ...", with the unit.
+    pub what: &'static str,
+    /// Whether a finite number is accepted.
+    pub accepts: fn(f64) -> bool,
+}
+
+impl Quantity {
+    /// Any finite number.
+    pub const fn any(what: &'static str) -> Self {
+        Self { what, accepts: |_| true }
+    }
+
+    /// A number above zero.
+    pub const fn positive(what: &'static str) -> Self {
+        Self { what, accepts: |value| value > 0.0 }
+    }
+}
+
+/// One table of the scene, and where it is.
+#[derive(Clone)]
+pub(super) struct Section<'a> {
+    file: &'a Path,
+    path: String,
+    table: &'a Table,
+}
+
+impl<'a> Section<'a> {
+    /// The whole file.
+    pub fn root(file: &'a Path, table: &'a Table) -> Self {
+        Self { file, path: String::new(), table }
+    }
+
+    /// The same table, called `path` in messages.
+    pub fn called(self, path: String) -> Self {
+        Self { path, ..self }
+    }
+
+    /// The dotted path of one of the keys.
+    pub fn path_of(&self, key: &str) -> String {
+        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+    }
+
+    /// An error at one of the keys.
+    pub fn error(&self, key: &str, reason: impl Into<String>) -> Error {
+        Error::scene(self.file, self.path_of(key), reason)
+    }
+
+    /// Whether the file says this key.
+    pub fn has(&self, key: &str) -> bool {
+        self.table.contains_key(key)
+    }
+
+    /// Refuses every key but these. To be called before anything is read, so that a misspelt key is reported as such
+    /// and not as a missing one.
+    pub fn only(&self, known: &[&str]) -> Result<()> {
+        match self.table.keys().find(|key| !known.contains(&key.as_str())) {
+            None => Ok(()),
+            Some(key) => Err(self.error(key, format!("unknown key; {}", advice(key, known, "known keys")))),
+        }
+    }
+
+    /// Refuses keys that belong to later versions: `(key, what to write instead)`.
+    pub fn later(&self, keys: &[(&str, &str)]) -> Result<()> {
+        match keys.iter().find(|(key, _)| self.has(key)) {
+            None => Ok(()),
+            Some((key, instead)) => Err(self.error(key, format!("not supported by this version; {instead}"))),
+        }
+    }
+
+    /// A number that must be there.
+    pub fn number(&self, key: &str, quantity: Quantity) -> Result<f64> {
+        self.optional_number(key, quantity)?.ok_or_else(|| self.missing(key, quantity.what))
+    }
+
+    /// A number that may be absent. Whole numbers are numbers.
+    pub fn optional_number(&self, key: &str, quantity: Quantity) -> Result<Option<f64>> {
+        let Some(value) = self.table.get(key) else { return Ok(None) };
+        number(value)
+            .filter(|&number| number.is_finite() && (quantity.accepts)(number))
+            .map(Some)
+            .ok_or_else(|| self.must_be(key, quantity.what, value))
+    }
+
+    /// A whole number that must be there.
+    pub fn count(&self, key: &str, what: &str, range: RangeInclusive<usize>) -> Result<usize> {
+        self.optional_count(key, what, range)?.ok_or_else(|| self.missing(key, what))
+    }
+
+    /// A whole number that may be absent.
+    pub fn optional_count(&self, key: &str, what: &str, range: RangeInclusive<usize>) -> Result<Option<usize>> {
+        self.table.get(key).map(|value| self.whole(key, value, what, range)).transpose()
+    }
+
+    /// Two whole numbers that must be there.
+    pub fn pair(&self, key: &str, what: &str, range: RangeInclusive<usize>) -> Result<[usize; 2]> {
+        match self.table.get(key) {
+            None => Err(self.missing(key, what)),
+            Some(Value::Array(values)) => match values.as_slice() {
+                [first, second] => {
+                    Ok([self.whole(key, first, what, range.clone())?, self.whole(key, second, what, range)?])
+                }
+                _ => Err(self.error(key, format!("must be {what}, got {} values", values.len()))),
+            },
+            Some(value) => Err(self.must_be(key, what, value)),
+        }
+    }
+
+    fn whole(&self, key: &str, value: &Value, what: &str, range: RangeInclusive<usize>) -> Result<usize> {
+        match *value {
+            Value::Integer(number) => usize::try_from(number).ok().filter(|number| range.contains(number)),
+            Value::Float(number) if number.fract() == 0.0 => {
+                let reason = format!("must be {what}, got {} (write {number:.0})", show(value));
+                return Err(self.error(key, reason));
+            }
+            _ => None,
+        }
+        .ok_or_else(|| self.must_be(key, what, value))
+    }
+
+    /// A text that may be absent. Control characters are refused: the text goes to HDF5 and to the terminal.
+    pub fn optional_text(&self, key: &str, what: &str) -> Result<Option<String>> {
+        match self.table.get(key) {
+            None => Ok(None),
+            Some(Value::String(text)) if !text.chars().any(char::is_control) => Ok(Some(text.clone())),
+            Some(value) => Err(self.must_be(key, what, value)),
+        }
+    }
+
+    /// One of the `accepted` words, which must be there; the words in `later` belong to later versions.
+    pub fn choice<T: Copy>(&self, key: &str, accepted: &[(&str, T)], later: &[&str]) -> Result<T> {
+        self.optional_choice(key, accepted, later)?.ok_or_else(|| self.missing(key, &either(accepted)))
+    }
+
+    /// One of the `accepted` words, or nothing.
+    pub fn optional_choice<T: Copy>(&self, key: &str, accepted: &[(&str, T)], later: &[&str]) -> Result<Option<T>> {
+        let Some(value) = self.table.get(key) else { return Ok(None) };
+        let word = value.as_str().unwrap_or_default();
+        if let Some((_, choice)) = accepted.iter().find(|(name, _)| *name == word) {
+            return Ok(Some(*choice));
+        }
+        let either = either(accepted);
+        if later.contains(&word) {
+            return Err(self.error(key, format!("\"{word}\" is not supported by this version; use {either}")));
+        }
+        let names: Vec<&str> = accepted.iter().map(|(name, _)| *name).collect();
+        let hint = match nearest(word, &names) {
+            Some(name) if names.len() > 1 => format!("; did you mean \"{name}\"?"),
+            _ => String::new(),
+        };
+        Err(self.error(key, format!("must be {either}, got {}{hint}", show(value))))
+    }
+
+    /// A table that must be there.
+    pub fn section(&self, key: &str) -> Result<Section<'a>> {
+        self.optional_section(key)?.ok_or_else(|| self.missing(key, &format!("a [{}] table", self.path_of(key))))
+    }
+
+    /// A table that may be absent.
+    pub fn optional_section(&self, key: &str) -> Result<Option<Section<'a>>> {
+        match self.table.get(key) {
+            None => Ok(None),
+            Some(Value::Table(table)) => Ok(Some(Section { file: self.file, path: self.path_of(key), table })),
+            Some(value) => Err(self.must_be(key, "a table", value)),
+        }
+    }
+
+    /// An array of tables, numbered from 0 in messages; empty when absent.
+    pub fn sections(&self, key: &str, what: &str) -> Result<Vec<Section<'a>>> {
+        let values = match self.table.get(key) {
+            None => return Ok(Vec::new()),
+            Some(Value::Array(values)) => values,
+            Some(value) => return Err(self.must_be(key, what, value)),
+        };
+        let section = |(index, value): (usize, &'a Value)| match value {
+            Value::Table(table) => {
+                Ok(Section { file: self.file, path: format!("{}.{index}", self.path_of(key)), table })
+            }
+            value => Err(self.error(&format!("{key}.{index}"), format!("must be a table, got {}", show(value)))),
+        };
+        values.iter().enumerate().map(section).collect()
+    }
+
+    /// An array of anything; empty when absent.
+    pub fn values(&self, key: &str, what: &str) -> Result<&'a [Value]> {
+        match self.table.get(key) {
+            None => Ok(&[]),
+            Some(Value::Array(values)) => Ok(values),
+            Some(value) => Err(self.must_be(key, what, value)),
+        }
+    }
+
+    /// The error for an absent key.
+    pub fn missing(&self, key: &str, what: &str) -> Error {
+        self.error(key, format!("missing; give {what}"))
+    }
+
+    /// The error for a value that is not accepted.
+    pub fn must_be(&self, key: &str, what: &str, value: &Value) -> Error {
+        self.error(key, format!("must be {what}, got {}", show(value)))
+    }
+}
+
+/// The number in a value; whole numbers are numbers.
+pub(super) fn number(value: &Value) -> Option<f64> {
+    match *value {
+        Value::Integer(number) => Some(number as f64),
+        Value::Float(number) => Some(number),
+        _ => None,
+    }
+}
+
+/// A value as it may stand in a message: as it would be typed, and on a short line.
+pub(super) fn show(value: &Value) -> String {
+    const LONGEST: usize = 60;
+    let kind = match value {
+        Value::Float(number) if number.is_nan() => return "nan".to_owned(),
+        Value::Float(number) => return format!("{number:?}"),
+        Value::Integer(number) => return number.to_string(),
+        Value::Boolean(yes) => return yes.to_string(),
+        Value::String(text) if text.chars().count() <= LONGEST => return format!("{text:?}"),
+        Value::String(_) => "a long text",
+        Value::Datetime(_) => "a date",
+        Value::Array(values) if values.is_empty() => "an empty array",
+        Value::Array(_) => "an array",
+        Value::Table(_) => "a table",
+    };
+    kind.to_owned()
+}
+
+/// What to write instead of an unknown word: the nearest known one, or all of them when none is near.
+pub(super) fn advice(word: &str, known: &[&str], title: &str) -> String {
+    match nearest(word, known) {
+        Some(name) => format!("did you mean \"{name}\"?"),
+        None => format!("{title}: {}", known.join(", ")),
+    }
+}
+
+/// The known word that looks most like this one, if any does.
+fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    const ALIKE: f64 = 0.75;
+    let word = word.to_lowercase();
+    known
+        .iter()
+        .map(|name| (strsim::jaro_winkler(&word, &name.to_lowercase()), *name))
+        .filter(|(likeness, _)| *likeness >= ALIKE)
+        .max_by(|(one, _), (other, _)| one.total_cmp(other))
+        .map(|(_, name)| name)
+}
+
+/// `"a", "b" or "c"`.
+fn either<T>(accepted: &[(&str, T)]) -> String {
+    let quoted: Vec<String> = accepted.iter().map(|(name, _)| format!("\"{name}\"")).collect();
+    match quoted.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+        _ => quoted.concat(),
+    }
+}

@@ -1,0 +1,128 @@
+//! `--set key.path=value`: changes of a scene's table before it is read.
+
+use std::path::Path;
+
+use toml::{Table, Value};
+
+use super::keys;
+use super::read::phase;
+use crate::error::{Error, Result};
+
+/// Applies the overrides in order.
+pub(super) fn apply(table: &mut Table, overrides: &[String], file: &Path) -> Result<()> {
+    for typed in overrides {
+        let (path, text) = split(typed)?;
+        set(table, path, value(text, typed)?, file)?;
+    }
+    Ok(())
+}
+
+/// Sets `path`, dotted keys such as `layer.width`, in the table of a scene. An element of an array is addressed by
+/// its index from 0 or, where it has one, by its name (`phase.slide.velocity`); a key with a dot in it is quoted
+/// (`phase."1.5 s".steps`). Tables on the way are made. Whether the keys exist is for the reader of the table to say.
+pub fn set(table: &mut Table, path: &str, value: Value, file: &Path) -> Result<()> {
+    let keys = split_path(path);
+    if keys.iter().any(String::is_empty) {
+        return Err(Error::scene(file, path, "must be keys joined by dots, such as layer.width"));
+    }
+    put_in_table(table, &keys, 0, value).map_err(|(depth, reason)| Error::scene(file, keys[..depth].join("."), reason))
+}
+
+/// Adds to the error of a scene the override that it comes from, if it comes from one.
+pub(super) fn blame(error: Error, overrides: &[String]) -> Error {
+    let Error::Scene { file, key, reason } = error else { return error };
+    let concerns = |typed: &&String| {
+        let path = split(typed).map_or_else(|_| Vec::new(), |(path, _)| split_path(path)).join(".");
+        key.strip_prefix(&path).is_some_and(|rest| !path.is_empty() && (rest.is_empty() || rest.starts_with('.')))
+    };
+    match overrides.iter().rev().find(concerns) {
+        Some(typed) => Error::Scene { file, reason: format!("{reason} (from --set {typed})"), key },
+        None => Error::Scene { file, key, reason },
+    }
+}
+
+/// `path=value`, at the first `=` outside quotes.
+fn split(typed: &str) -> Result<(&str, &str)> {
+    let mut quoted = false;
+    let equals = typed.char_indices().find(|(_, c)| {
+        quoted ^= *c == '"';
+        *c == '=' && !quoted
+    });
+    match equals {
+        Some((at, _)) if at > 0 => Ok((typed[..at].trim(), typed[at + 1..].trim())),
+        _ => Err(Error::Usage(format!(
+            "--set {typed}: must be key.path=value, for example --set phase.slide.velocity=0.1"
+        ))),
+    }
+}
+
+/// A value as TOML, or as a bare text where it is none: `layer.sides=free`.
+fn value(text: &str, typed: &str) -> Result<Value> {
+    match text.parse() {
+        Ok(value) => Ok(value),
+        // What opens a quote or a bracket was meant as TOML.
+        Err(error) if text.starts_with(['"', '\'', '[', '{']) => {
+            let reason = error.message().replace('\n', "; ");
+            Err(Error::Usage(format!("--set {typed}: the value is not TOML: {reason}")))
+        }
+        Err(_) => Ok(Value::String(text.to_owned())),
+    }
+}
+
+/// The keys of a dotted path; dots inside double quotes do not separate.
+fn split_path(path: &str) -> Vec<String> {
+    let mut quoted = false;
+    let separates = |c: char| {
+        quoted ^= c == '"';
+        c == '.' && !quoted
+    };
+    path.split(separates).map(|key| key.trim().replace('"', "")).collect()
+}
+
+/// The keys of the path that lead to what is wrong, and what is wrong.
+type Misfit = (usize, String);
+
+/// Puts the value at `keys[depth..]` of a table.
+fn put_in_table(table: &mut Table, keys: &[String], depth: usize, value: Value) -> std::result::Result<(), Misfit> {
+    if depth + 1 == keys.len() {
+        table.insert(keys[depth].clone(), value);
+        return Ok(());
+    }
+    let child = table.entry(keys[depth].clone()).or_insert_with(|| Value::Table(Table::new()));
+    put_in_value(child, keys, depth + 1, value)
+}
+
+/// Puts the value at `keys[depth..]` of what stands at `keys[..depth]`.
+fn put_in_value(target: &mut Value, keys: &[String], depth: usize, value: Value) -> std::result::Result<(), Misfit> {
+    match target {
+        target if depth == keys.len() => {
+            *target = value;
+            Ok(())
+        }
+        Value::Table(table) => put_in_table(table, keys, depth, value),
+        Value::Array(array) => {
+            let index = element(array, &keys[depth - 1], &keys[depth]).map_err(|reason| (depth + 1, reason))?;
+            put_in_value(&mut array[index], keys, depth + 1, value)
+        }
+        other => Err((depth, format!("is {}, which has no key {}", keys::show(other), keys[depth]))),
+    }
+}
+
+/// The position of the element that `word` addresses, by name or by index.
+fn element(array: &[Value], key: &str, word: &str) -> std::result::Result<usize, String> {
+    let name = |(index, value): (usize, &Value)| match value.as_table()?.get("name") {
+        Some(name) => name.as_str().map(str::to_owned),
+        None => (key == "phase").then(|| phase::default_name(index)),
+    };
+    let names: Vec<Option<String>> = array.iter().enumerate().map(name).collect();
+    let by_name = || names.iter().position(|name| name.as_deref() == Some(word));
+    let by_index = || word.parse().ok().filter(|&index: &usize| index < array.len());
+    by_name().or_else(by_index).ok_or_else(|| {
+        let known: Vec<&str> = names.iter().flatten().map(String::as_str).collect();
+        match array.len() {
+            0 => format!("the array {key} is empty"),
+            n if known.is_empty() => format!("no such element; give an index from 0 to {}", n - 1),
+            _ => format!("no such {key}; {}", keys::advice(word, &known, "known names")),
+        }
+    })
+}

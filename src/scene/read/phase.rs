@@ -1,0 +1,82 @@
+//! The `[[phase]]` tables: the loading history.
+
+use crate::error::Result;
+use crate::scene::keys::{Quantity, Section};
+use crate::scene::{Motion, Phase};
+
+/// All phases, in order; at least one.
+pub(super) fn read_all(root: &Section) -> Result<Vec<Phase>> {
+    let mut phases: Vec<Phase> = Vec::new();
+    for (index, section) in root.sections("phase", "an array of tables, [[phase]]")?.into_iter().enumerate() {
+        let name = name(&section, index, &phases)?;
+        phases.push(phase(&section.called(format!("phase.{name}")), name)?);
+    }
+    match phases.is_empty() {
+        true => Err(root.missing("phase", "at least one [[phase]] table")),
+        false => Ok(phases),
+    }
+}
+
+/// The name of the phase at `index` when the file gives none.
+pub(in crate::scene) fn default_name(index: usize) -> String {
+    format!("phase-{}", index + 1)
+}
+
+fn name(section: &Section, index: usize, before: &[Phase]) -> Result<String> {
+    let name = section.optional_text("name", "a name on one line")?.unwrap_or_else(|| default_name(index));
+    if name.trim().is_empty() {
+        return Err(section.error("name", "must be a name that is not empty"));
+    }
+    match before.iter().position(|phase| phase.name == name) {
+        Some(first) => Err(section.error("name", format!("{name:?} is the name of phase {first} too; give another"))),
+        None => Ok(name),
+    }
+}
+
+fn phase(section: &Section, name: String) -> Result<Phase> {
+    const STEPS: &str = "a whole number of steps, at least 1";
+    const APPROACH: Quantity = Quantity::any("a normal approach in m");
+
+    section.later(&[("tolerance", "give steps"), ("temperature", super::NO_TEMPERATURE)])?;
+    section.only(&["name", "duration", "steps", "approach", "velocity", "distance", "tangential"])?;
+    let motion = motion(section)?;
+    Ok(Phase {
+        name,
+        duration: duration(section, motion)?,
+        steps: section.count("steps", STEPS, super::COUNT)?,
+        approach: section.optional_number("approach", APPROACH)?,
+        motion,
+    })
+}
+
+fn motion(section: &Section) -> Result<Motion> {
+    const VELOCITY: Quantity = Quantity::any("a velocity in m/s");
+    const AMPLITUDE: Quantity = Quantity::any("a length in m");
+    const CYCLES: Quantity = Quantity::positive("a positive number of cycles");
+
+    let Some(tangential) = section.optional_section("tangential")? else {
+        return Ok(Motion::Velocity(section.optional_number("velocity", VELOCITY)?.unwrap_or(0.0)));
+    };
+    if let Some(other) = ["velocity", "distance"].into_iter().find(|key| section.has(key)) {
+        return Err(section.error(other, format!("give {other} or tangential, not both")));
+    }
+    tangential.only(&["amplitude", "cycles"])?;
+    let amplitude = tangential.number("amplitude", AMPLITUDE)?;
+    Ok(Motion::Tangential { amplitude, cycles: tangential.number("cycles", CYCLES)? })
+}
+
+/// The duration, given as itself or as the distance slid at the velocity of the phase.
+fn duration(section: &Section, motion: Motion) -> Result<f64> {
+    const DURATION: Quantity = Quantity::positive("a positive duration in s");
+    const DISTANCE: Quantity = Quantity::positive("a positive distance in m");
+
+    let duration = section.optional_number("duration", DURATION)?;
+    let distance = section.optional_number("distance", DISTANCE)?;
+    match (duration, distance, motion) {
+        (Some(_), Some(_), _) => Err(section.error("distance", "give distance or duration, not both")),
+        (Some(duration), None, _) => Ok(duration),
+        (None, Some(distance), Motion::Velocity(velocity)) if velocity != 0.0 => Ok(distance / velocity.abs()),
+        (None, Some(_), _) => Err(section.error("distance", "needs a velocity other than 0, or give duration instead")),
+        (None, None, _) => Err(section.missing("duration", "it in s, or velocity and distance")),
+    }
+}

@@ -1,0 +1,47 @@
+//! What a scene says of itself.
+
+use super::{Scene, Sides, When};
+
+impl Scene {
+    /// The resolved scene as TOML: every default written out, every duration and modulus in its own key. Reading it
+    /// again gives an equal scene.
+    pub fn to_toml(&self) -> String {
+        // Text, numbers and tables all have a form in TOML, so the error has no way to occur; should it, a comment
+        // says so without costing the user the results.
+        toml::to_string(self).unwrap_or_else(|error| format!("# the scene has no form in TOML: {error}\n"))
+    }
+
+    /// The whole loading history, s.
+    pub fn duration(&self) -> f64 {
+        self.phases.iter().map(|phase| phase.duration).sum()
+    }
+
+    /// The steps of all phases.
+    pub fn steps(&self) -> usize {
+        self.phases.iter().map(|phase| phase.steps).sum()
+    }
+
+    /// The displacements to be solved for: two to a node, without those that the lower face and the sides hold, and
+    /// with the two sides counted once where they are the same nodes.
+    pub fn unknowns(&self) -> usize {
+        let [along, through] = self.layer.cells;
+        // The lowest row of nodes is clamped, so that as many rows move as there are cells.
+        let per_row = match self.layer.sides {
+            Sides::Periodic => 2 * along,
+            Sides::Free => 2 * (along + 1),
+            Sides::Roller => 2 * along,
+            Sides::Fixed => 2 * (along - 1),
+        };
+        per_row * through
+    }
+
+    /// Moments that round-off put just after the end of the history are its end.
+    pub(super) fn clamp_moments(&mut self) {
+        let end = self.duration();
+        for moment in &mut self.output.bulk_at {
+            if let When::Time(time) = moment {
+                *time = time.min(end);
+            }
+        }
+    }
+}
