@@ -89,6 +89,11 @@ impl Bulk {
         })
     }
 
+    /// A matrix for [`Self::tangent`] to fill.
+    pub fn new_tangent(&self) -> Result<Matrix> {
+        self.parts[0].stiffness.duplicate()
+    }
+
     /// tangent = sum_p c_p K_p at step length `dt`.
     pub fn tangent(&self, dt: f64, tangent: &mut Matrix) -> Result<()> {
         for (i, (part, c)) in self.parts.iter().zip(self.secants(dt)).enumerate() {

@@ -1,6 +1,7 @@
 //! Parallel transient viscoelastic contact with friction, by interface finite elements with embedded profiles (MPJR).
 
 pub mod bulk;
+pub mod composition;
 pub mod element;
 pub mod error;
 pub mod friction;

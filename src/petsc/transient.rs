@@ -110,7 +110,7 @@ impl Integrator {
             check(ffi::TSSetType(ts, c"beuler".as_ptr()))?;
             check(ffi::TSSetExactFinalTime(ts, ffi::TSExactFinalTimeOption_TS_EXACTFINALTIME_STEPOVER))?;
             check(ffi::TSSetMaxTime(ts, f64::MAX))?;
-            check(ffi::TSSetMaxSteps(ts, i32::MAX))?;
+            check(ffi::TSSetMaxSteps(ts, i32::MAX - 1))?;
             check(ffi::TSSetMaxSNESFailures(ts, -1))?;
             check(ffi::TSSetMaxStepRejections(ts, settings.max_cuts as i32))?;
             let mut adapt = null_mut();

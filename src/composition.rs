@@ -1,0 +1,165 @@
+//! The composition root: the one place that matches on what a scene asks for and builds the parts for it.
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use crate::bulk::{Bulk, Part, Series};
+use crate::element::mpjr::Quadrature;
+use crate::error::Result;
+use crate::friction::Friction;
+use crate::interface::{Interface, Laws};
+use crate::loading::{self, Motion, Phase};
+use crate::mesh::{Layer, Sides};
+use crate::petsc::{Matrix, Settings, Vector};
+use crate::profile::{Circle, Harmonic, Parabola, Profile, Repeated, Wedge};
+use crate::rheology::{Arm, Memory, Prony};
+use crate::scene::{self, Scene};
+use crate::solve::{Body, Limits, Moduli, Monolithic};
+
+/// A scene made ready to run.
+pub struct Problem {
+    /// The discretised problem.
+    pub monolithic: Monolithic,
+    /// Its tangent.
+    pub tangent: Matrix,
+    /// Its solution, at rest.
+    pub u: Vector,
+    /// The loading history.
+    pub phases: Vec<Phase>,
+    /// How TS and SNES are set.
+    pub settings: Settings,
+    /// The body's mesh, for output.
+    pub mesh: crate::mesh::Mesh,
+}
+
+/// Builds what `scene` asks for, distributed over `comm`.
+pub fn build(comm: &SimpleCommunicator, scene: &Scene) -> Result<Problem> {
+    let mesh = layer(&scene.layer).mesh();
+    let face = mesh.face.clone();
+    let moduli = moduli(&scene.material);
+    let body = Body::new(comm.duplicate(), mesh.clone(), moduli)?;
+    let u = body.vector()?;
+    let bulk = bulk(scene, &body, moduli, &u)?;
+    let laws = Laws {
+        profile: profile(scene),
+        penalty: scene.contact.penalty,
+        friction: scene.friction.as_ref().map(friction),
+    };
+    let symmetric = laws.friction.is_none();
+    let interface = Interface::new(face, laws, quadrature(scene.contact.quadrature));
+    let mut tangent = bulk.new_tangent()?;
+    tangent.set_near_null_space(&mut body.coordinates()?)?;
+    if symmetric {
+        tangent.declare_positive_definite()?;
+    }
+    let limits = Limits::default();
+    let settings = Settings { symmetric, max_newton: limits.max_newton, max_cuts: limits.max_cuts };
+    let monolithic = Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?;
+    Ok(Problem { monolithic, tangent, u, phases: phases(scene), settings, mesh })
+}
+
+fn layer(layer: &scene::Layer) -> Layer {
+    let sides = match layer.sides {
+        scene::Sides::Periodic => Sides::Periodic,
+        scene::Sides::Free => Sides::Free,
+        scene::Sides::Roller => Sides::Roller,
+        scene::Sides::Fixed => Sides::Fixed,
+    };
+    Layer { width: layer.width, depth: layer.depth, cells: layer.cells, grading: layer.grading, sides }
+}
+
+/// K = 2 G (1 + nu) / (3 (1 - 2 nu)), instantaneous.
+fn moduli(material: &scene::Material) -> Moduli {
+    let (g, nu) = (material.shear_modulus, material.poisson_ratio);
+    Moduli { shear: g, bulk: 2.0 * g * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu)) }
+}
+
+/// One part where shear and bulk modulus relax together (or not at all), two where only the shear modulus does.
+fn bulk(scene: &Scene, body: &Body, moduli: Moduli, layout: &Vector) -> Result<Bulk> {
+    let material = &scene.material;
+    let prony = Prony { arms: material.arms.iter().map(|a| Arm { weight: a.weight, time: a.time }).collect() };
+    let times = prony.arms.iter().map(|arm| arm.time).collect();
+    let series = (!prony.arms.is_empty()).then(|| Series {
+        long_term: prony.long_term(),
+        weights: prony.arms.iter().map(|arm| arm.weight).collect(),
+    });
+    let part = |moduli, diagonal, series| Ok(Part { stiffness: body.stiffness(moduli, diagonal)?, series });
+    let constant_bulk = material.poisson_rule == Some(scene::PoissonRule::ConstantBulkModulus);
+    let parts = if constant_bulk && series.is_some() {
+        vec![
+            part(Moduli { bulk: 0.0, ..moduli }, moduli.shear, series)?,
+            part(Moduli { shear: 0.0, ..moduli }, 0.0, None)?,
+        ]
+    } else {
+        vec![part(moduli, moduli.shear, series)?]
+    };
+    let memory = match material.memory {
+        scene::Memory::Exponential => Memory::Exponential,
+        scene::Memory::BackwardEuler => Memory::BackwardEuler,
+    };
+    Bulk::new(parts, times, memory, layout)
+}
+
+/// Under periodic sides every profile repeats with the layer's period.
+fn profile(scene: &Scene) -> Box<dyn Profile> {
+    let period = (scene.layer.sides == scene::Sides::Periodic).then_some(scene.layer.width);
+    fn repeat<P: Profile + 'static>(profile: P, centre: f64, period: Option<f64>) -> Box<dyn Profile> {
+        match period {
+            Some(period) => Box::new(Repeated { profile, centre, period }),
+            None => Box::new(profile),
+        }
+    }
+    match scene.indenter {
+        scene::Indenter::Harmonic { amplitude, wavelength } => Box::new(Harmonic { amplitude, wavelength }),
+        scene::Indenter::Parabola { radius, centre } => repeat(Parabola { radius, centre }, centre, period),
+        scene::Indenter::Circle { radius, centre } => repeat(Circle { radius, centre }, centre, period),
+        scene::Indenter::Wedge { slope, centre } => repeat(Wedge { slope, centre }, centre, period),
+    }
+}
+
+fn friction(friction: &scene::Friction) -> Friction {
+    match *friction {
+        scene::Friction::CoulombTanh { coefficient, regularisation } => {
+            Friction::coulomb_tanh(coefficient, regularisation)
+        }
+    }
+}
+
+fn quadrature(quadrature: scene::Quadrature) -> Quadrature {
+    match quadrature {
+        scene::Quadrature::Nodal => Quadrature::Nodal,
+        scene::Quadrature::Gauss => Quadrature::Gauss,
+    }
+}
+
+/// The phases end to end, each from where the one before left the indenter; a step ends at every moment that bulk
+/// output asks for.
+fn phases(scene: &Scene) -> Vec<Phase> {
+    let moments: Vec<f64> = scene
+        .output
+        .bulk_at
+        .iter()
+        .filter_map(|when| if let scene::When::Time(t) = when { Some(*t) } else { None })
+        .collect();
+    let (mut start, mut approach, mut sliding) = (0.0, 0.0, 0.0);
+    let mut list = Vec::with_capacity(scene.phases.len());
+    for phase in &scene.phases {
+        let to = phase.approach.unwrap_or(approach);
+        let motion = match phase.motion {
+            scene::Motion::Velocity(v) => Motion::Velocity(v),
+            scene::Motion::Tangential { amplitude, cycles } => Motion::Sinusoid { amplitude, cycles },
+        };
+        let phase = Phase {
+            name: phase.name.clone(),
+            start,
+            duration: phase.duration,
+            approach: [approach, to],
+            sliding,
+            motion,
+            steps: loading::targets(start, phase.duration, phase.steps, &moments),
+        };
+        (start, approach, sliding) = (phase.end(), to, phase.final_sliding());
+        list.push(phase);
+    }
+    list
+}
