@@ -93,16 +93,13 @@ fn times(phases: &[Phase]) -> Check {
             return fail(&key, format!("must be a positive time in s that can be counted, got {:?}", phase.duration));
         }
         if phase.steps > MOST - before {
-            let reason = format!(
-                "the history can have at most {MOST} steps, got {} more than that",
-                phase.steps - (MOST - before)
-            );
+            let reason = format!("the history can have at most {MOST} steps in all");
             return fail(&format!("phase.{}.steps", phase.name), reason);
         }
         // Far from the round-off of the clock, so that the step itself keeps some digits.
         if step <= 1e-12 * end {
             let reason =
-                format!("its steps of {step:.1e} s are lost beside the {end:.1e} s before its end; take fewer");
+                format!("its steps of {step:.1e} s are lost in the {end:.1e} s since the start; take longer ones");
             return fail(&key, reason);
         }
         start = end;

@@ -88,10 +88,11 @@ impl<'a> Section<'a> {
     /// A number that may be absent. Whole numbers are numbers.
     pub fn optional_number(&self, key: &str, quantity: Quantity) -> Result<Option<f64>> {
         let Some(value) = self.table.get(key) else { return Ok(None) };
-        number(value)
-            .filter(|&number| number.is_finite() && (quantity.accepts)(number))
-            .map(Some)
-            .ok_or_else(|| self.must_be(key, quantity.what, value))
+        match number(value) {
+            Some(number) if !number.is_finite() => Err(self.must_be(key, &format!("finite: {}", quantity.what), value)),
+            Some(number) if (quantity.accepts)(number) => Ok(Some(number)),
+            _ => Err(self.must_be(key, quantity.what, value)),
+        }
     }
 
     /// A whole number that must be there.
@@ -165,7 +166,7 @@ impl<'a> Section<'a> {
 
     /// A table that must be there.
     pub fn section(&self, key: &str) -> Result<Section<'a>> {
-        self.optional_section(key)?.ok_or_else(|| self.missing(key, &format!("a [{}] table", self.path_of(key))))
+        self.optional_section(key)?.ok_or_else(|| self.missing(key, &format!("the [{}] table", self.path_of(key))))
     }
 
     /// A table that may be absent.

@@ -28,12 +28,14 @@ pub fn set(table: &mut Table, path: &str, value: Value, file: &Path) -> Result<(
     put_in_table(table, &keys, 0, value).map_err(|(depth, reason)| Error::scene(file, keys[..depth].join("."), reason))
 }
 
-/// Adds to the error of a scene the override that it comes from, if it comes from one.
+/// Adds to the error of a scene the last override at its key, of the table that the key is in, or of what the key
+/// holds: where the user is most likely to have written what is wrong.
 pub(super) fn blame(error: Error, overrides: &[String]) -> Error {
     let Error::Scene { file, key, reason } = error else { return error };
     let concerns = |typed: &&String| {
-        let path = split(typed).map_or_else(|_| Vec::new(), |(path, _)| split_path(path)).join(".");
-        key.strip_prefix(&path).is_some_and(|rest| !path.is_empty() && (rest.is_empty() || rest.starts_with('.')))
+        let path = split(typed).map_or_else(|_| Vec::new(), |(path, _)| split_path(path));
+        let keys = split_path(&key);
+        !key.is_empty() && path.iter().zip(&keys).all(|(one, other)| one == other)
     };
     match overrides.iter().rev().find(concerns) {
         Some(typed) => Error::Scene { file, reason: format!("{reason} (from --set {typed})"), key },

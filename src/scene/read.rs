@@ -40,7 +40,7 @@ pub fn from_table(table: &Table, file: &Path) -> Result<Scene> {
     let root = Section::root(file, table);
     root.later(&[
         ("mesh", "use [layer]"),
-        ("element", "remove it; the element is the 4-node quadrilateral"),
+        ("element", "remove it: the element is the 4-node quadrilateral"),
         ("temperature", NO_TEMPERATURE),
         ("reference_temperature", NO_TEMPERATURE),
     ])?;
@@ -61,7 +61,7 @@ pub fn from_table(table: &Table, file: &Path) -> Result<Scene> {
     Ok(scene)
 }
 
-const NO_TEMPERATURE: &str = "remove it; the temperature stays the one of the material's data";
+const NO_TEMPERATURE: &str = "remove it: the temperature stays the one of the material's data";
 
 fn title(root: &Section, file: &Path) -> Result<String> {
     let stem = || file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -76,7 +76,7 @@ fn layer(section: &Section) -> Result<Layer> {
     const SIDES: [(&str, Sides); 4] =
         [("periodic", Sides::Periodic), ("free", Sides::Free), ("roller", Sides::Roller), ("fixed", Sides::Fixed)];
 
-    section.later(&[("element", "remove it; the element is the 4-node quadrilateral")])?;
+    section.later(&[("element", "remove it: the element is the 4-node quadrilateral")])?;
     section.only(&["width", "depth", "cells", "grading", "sides"])?;
     Ok(Layer {
         width: section.number("width", LENGTH)?,
@@ -186,6 +186,10 @@ fn indenter(section: &Section) -> Result<Indenter> {
     const POSITION: Quantity = Quantity::any("a position in m");
     const SLOPE: Quantity = Quantity::positive("a positive slope");
 
+    // The profile decides which keys there are; where it is absent, perhaps it is misspelt.
+    if !section.has("profile") {
+        section.only(&["profile", "amplitude", "wavelength", "radius", "centre", "slope"])?;
+    }
     match section.choice("profile", &PROFILES, &LATER)? {
         Profile::Harmonic => {
             section.only(&["profile", "amplitude", "wavelength"])?;
@@ -214,7 +218,7 @@ fn contact(section: &Section) -> Result<Contact> {
     const PENALTY: Quantity = Quantity::positive("a positive stiffness in Pa/m");
     const QUADRATURES: [(&str, Quadrature); 2] = [("nodal", Quadrature::Nodal), ("gauss", Quadrature::Gauss)];
 
-    section.later(&[("tolerance", "give penalty"), ("method", "remove it; contact is enforced by penalty")])?;
+    section.later(&[("tolerance", "give penalty"), ("method", "remove it: contact is enforced by penalty")])?;
     section.only(&["penalty", "quadrature"])?;
     Ok(Contact {
         penalty: section.number("penalty", PENALTY)?,
@@ -226,8 +230,14 @@ fn friction(section: &Section) -> Result<Friction> {
     const COEFFICIENT: Quantity = Quantity { what: "a friction coefficient, at least 0", accepts: |f| f >= 0.0 };
     const REGULARISATION: Quantity = Quantity::positive("a positive slip rate in m/s");
 
+    const KEYS: [&str; 3] = ["law", "coefficient", "regularisation"];
+
+    // The law decides which keys there are; where it is absent, perhaps it is misspelt.
+    if !section.has("law") {
+        section.only(&KEYS)?;
+    }
     section.choice("law", &[("coulomb_tanh", ())], &["coulomb_elastic_slip"])?;
-    section.only(&["law", "coefficient", "regularisation"])?;
+    section.only(&KEYS)?;
     Ok(Friction::CoulombTanh {
         coefficient: section.number("coefficient", COEFFICIENT)?,
         regularisation: section.number("regularisation", REGULARISATION)?,

@@ -6,15 +6,17 @@ use crate::scene::{Motion, Phase};
 
 /// All phases, in order; at least one.
 pub(super) fn read_all(root: &Section) -> Result<Vec<Phase>> {
+    let sections = root.sections("phase", "an array of tables, [[phase]]")?;
+    if sections.is_empty() {
+        let wrong = if root.has("phase") { "empty" } else { "missing" };
+        return Err(root.error("phase", format!("{wrong}; give at least one [[phase]] table")));
+    }
     let mut phases: Vec<Phase> = Vec::new();
-    for (index, section) in root.sections("phase", "an array of tables, [[phase]]")?.into_iter().enumerate() {
+    for (index, section) in sections.into_iter().enumerate() {
         let name = name(&section, index, &phases)?;
         phases.push(phase(&section.called(format!("phase.{name}")), name)?);
     }
-    match phases.is_empty() {
-        true => Err(root.missing("phase", "at least one [[phase]] table")),
-        false => Ok(phases),
-    }
+    Ok(phases)
 }
 
 /// The name of the phase at `index` when the file gives none.

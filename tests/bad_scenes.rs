@@ -1,0 +1,30 @@
+//! Every scene of `tests/scenes/bad/` is refused with exactly the message that it carries.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[allow(dead_code)]
+mod common;
+
+use mpjr::scene::{Source, read};
+
+#[test]
+fn each_bad_scene_gives_its_message() {
+    let scenes = common::bad_scenes();
+    assert!(scenes.len() >= 50, "only {} scenes", scenes.len());
+    let mut wrong = Vec::new();
+    for scene in &scenes {
+        let source = Source { file: scene.file.clone(), overrides: scene.overrides() };
+        let (message, exit) = match read(&scene.text, &source) {
+            Ok(_) => ("(accepted)".to_owned(), 0),
+            Err(error) => {
+                let message = error.to_string();
+                let prefix = format!("{}: ", scene.file.display());
+                (message.strip_prefix(&prefix).unwrap_or(&message).to_owned(), error.exit_code())
+            }
+        };
+        if message != scene.message || exit != scene.exit || message.contains('\n') {
+            let name = scene.file.file_name().unwrap().to_string_lossy();
+            wrong.push(format!("{name} ({exit})\n  must be: {}\n  is:      {message}", scene.message));
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}

@@ -1,0 +1,298 @@
+//! Good scenes: what is read, what is resolved, and that what is resolved can be read again.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[allow(dead_code)]
+mod common;
+
+use std::path::PathBuf;
+
+use mpjr::error::{Error, Result};
+use mpjr::scene::*;
+
+const SMALLEST: &str = r#"
+[layer]
+width = 2
+depth = 1
+cells = [4, 3]
+sides = "free"
+[material]
+young_modulus = 2.6
+poisson_ratio = 0.3
+[indenter]
+profile = "parabola"
+radius = 10
+centre = -1
+[contact]
+penalty = 100
+[[phase]]
+duration = 2
+steps = 4
+[[phase]]
+velocity = -0.5
+distance = 1.0
+steps = 2
+"#;
+
+fn read_with(text: &str, overrides: &[&str]) -> Result<Scene> {
+    let overrides = overrides.iter().map(|text| text.to_string()).collect();
+    read(text, &Source { file: PathBuf::from("dir/smallest.toml"), overrides })
+}
+
+fn error_at(result: Result<Scene>) -> String {
+    match result {
+        Err(Error::Scene { key, .. }) => key,
+        other => panic!("not an error of a scene: {other:?}"),
+    }
+}
+
+#[test]
+fn what_may_be_absent_has_its_default() {
+    let scene = read_with(SMALLEST, &[]).unwrap();
+    assert_eq!(scene.title, "smallest");
+    assert_eq!(scene.layer.grading, 1.0);
+    assert!((scene.material.shear_modulus - 1.0).abs() < 1e-15);
+    assert_eq!((scene.material.arms.len(), scene.material.poisson_rule), (0, None));
+    assert_eq!(scene.material.memory, Memory::Exponential);
+    assert_eq!(scene.contact.quadrature, Quadrature::Nodal);
+    assert_eq!(scene.friction, None);
+    assert_eq!(scene.solver, Solver { strategy: Strategy::Auto, tolerance: 1e-8 });
+    assert_eq!(scene.output, Output { interface_every: 1, bulk_at: vec![] });
+    let [first, second] = scene.phases.as_slice() else { panic!("two phases") };
+    assert_eq!((first.name.as_str(), second.name.as_str()), ("phase-1", "phase-2"));
+    assert_eq!((first.approach, first.motion), (None, Motion::Velocity(0.0)));
+    // The distance is the length of the way, whichever way.
+    assert_eq!((second.duration, second.motion), (2.0, Motion::Velocity(-0.5)));
+}
+
+#[test]
+fn the_paper_s_scene_is_read_as_written() {
+    let file = common::directory("runs/eva-one-arm.toml");
+    let text = std::fs::read_to_string(&file).unwrap();
+    let scene = read(&text, &Source { file, overrides: vec![] }).unwrap();
+    assert_eq!(scene.layer.sides, Sides::Periodic);
+    assert_eq!(scene.layer.cells, [128, 128]);
+    assert_eq!(scene.material.arms, [Arm { weight: 0.579, time: 0.817 }]);
+    assert_eq!(scene.material.poisson_rule, Some(PoissonRule::ConstantRatio));
+    assert_eq!(scene.indenter, Indenter::Harmonic { amplitude: 5e-4, wavelength: 1.0 });
+    assert_eq!(scene.friction, Some(Friction::CoulombTanh { coefficient: 0.2, regularisation: 2.154e-4 }));
+    assert_eq!(scene.phases[0].approach, Some(1e-3));
+    assert_eq!(scene.phases[1].duration, 2.0 / 0.02154);
+    assert_eq!(scene.duration(), 10.0 + 2.0 / 0.02154);
+    assert_eq!(scene.steps(), 450);
+    assert_eq!(scene.unknowns(), 2 * 128 * 128);
+    assert_eq!(scene.output.bulk_at, ["indent", "slide"].map(|name| When::PhaseEnd(name.to_owned())));
+}
+
+#[test]
+fn unknowns_are_the_displacements_that_nothing_holds() {
+    for (sides, unknowns) in [("free", 30), ("roller", 24), ("fixed", 18), ("periodic", 24)] {
+        let scene = read_with(SMALLEST, &[&format!("layer.sides={sides}")]).unwrap();
+        assert_eq!(scene.unknowns(), unknowns, "{sides}");
+    }
+}
+
+#[test]
+fn overrides_are_applied_in_order_by_name_and_by_index() {
+    let scene = read_with(
+        SMALLEST,
+        &[
+            "title=two words",
+            "layer.cells.1 = 7",
+            "layer.sides=roller",
+            "layer.grading=\"3\"",
+            "layer.grading=3",
+            "solver.tolerance=1e-6",
+            "phase.phase-2.name=\"fast, 1.5 m/s\"",
+            "phase.\"fast, 1.5 m/s\".velocity=1.5",
+            "phase.0.steps=9",
+            "output.bulk_at=[\"fast, 1.5 m/s\", 1]",
+        ],
+    )
+    .unwrap();
+    assert_eq!(scene.title, "two words");
+    assert_eq!(scene.layer.cells, [4, 7]);
+    assert_eq!((scene.layer.sides, scene.layer.grading), (Sides::Roller, 3.0));
+    assert_eq!(scene.solver.tolerance, 1e-6);
+    assert_eq!((scene.phases[1].name.as_str(), scene.phases[1].motion), ("fast, 1.5 m/s", Motion::Velocity(1.5)));
+    assert_eq!(scene.phases[0].steps, 9);
+    assert_eq!(scene.output.bulk_at[1], When::Time(1.0));
+}
+
+#[test]
+fn a_whole_table_can_be_set() {
+    let file = PathBuf::from("sweep.toml");
+    let mut table = parse(SMALLEST, &file).unwrap();
+    let material = parse("shear_modulus = 3.0\npoisson_ratio = 0.0", &file).unwrap();
+    set(&mut table, "material", material.into(), &file).unwrap();
+    assert_eq!(from_table(&table, &file).unwrap().material.shear_modulus, 3.0);
+}
+
+/// Each key, set to what it cannot be, is the key of the error: none is known but not looked at.
+#[test]
+fn no_key_is_ignored() {
+    let parabola = [
+        "title layer.width layer.depth layer.cells layer.grading layer.sides",
+        "material.shear_modulus material.young_modulus material.poisson_ratio material.arms material.poisson_rule",
+        "material.memory indenter.profile indenter.radius indenter.centre contact.penalty contact.quadrature",
+        "phase phase.phase-2.name phase.phase-2.duration phase.phase-2.steps phase.phase-2.approach",
+        "phase.phase-2.velocity phase.phase-2.distance phase.phase-2.tangential friction.law",
+        "solver.strategy solver.tolerance output.interface_every output.bulk_at output.checkpoint_every",
+        "layer material indenter contact friction solver output",
+    ]
+    .join(" ");
+    for key in parabola.split(' ') {
+        let at = error_at(read_with(SMALLEST, &[&format!("{key}=true")]));
+        // A phase whose name is wrong can only be numbered.
+        assert_eq!(at.replace("phase.1.name", "phase.phase-2.name"), key);
+    }
+    let table = |key: &str, fields: &str| format!("{key}={{ {fields} }}");
+    for (key, fields, wrong) in [
+        ("friction", "law = \"coulomb_tanh\", coefficient = true, regularisation = 1", "coefficient"),
+        ("friction", "law = \"coulomb_tanh\", coefficient = 1, regularisation = true", "regularisation"),
+        ("indenter", "profile = \"harmonic\", amplitude = true, wavelength = 1", "amplitude"),
+        ("indenter", "profile = \"harmonic\", amplitude = 1, wavelength = true", "wavelength"),
+        ("indenter", "profile = \"wedge\", slope = true, centre = 1", "slope"),
+        ("indenter", "profile = \"wedge\", slope = 1, centre = true", "centre"),
+        ("indenter", "profile = \"circle\", radius = true, centre = 1", "radius"),
+        ("indenter", "profile = \"circle\", radius = 1, centre = true", "centre"),
+        ("phase.phase-1.tangential", "amplitude = true, cycles = 1", "amplitude"),
+        ("phase.phase-1.tangential", "amplitude = 1, cycles = true", "cycles"),
+    ] {
+        assert_eq!(error_at(read_with(SMALLEST, &[&table(key, fields)])), format!("{key}.{wrong}"));
+    }
+}
+
+#[test]
+fn numbers_at_their_limits_are_accepted() {
+    let arms = "material.arms=[{ weight = 0.7, time = 1 }, { weight = 0.2, time = 2 }, { weight = 0.1, time = 3 }]";
+    for overrides in [
+        // A Maxwell fluid, whose weights sum to 1 but for round-off.
+        vec![arms, "material.poisson_rule=constant_ratio"],
+        vec!["material.poisson_rule=constant_ratio"],
+        vec!["material.poisson_ratio=0.49999"],
+        vec!["material.poisson_ratio=-0.9"],
+        vec!["phase.0.approach=-3"],
+        vec!["layer.width=1.5", "layer.sides=periodic"],
+        vec!["indenter={ profile = \"harmonic\", amplitude = 1, wavelength = 0.1 }", "layer.sides=periodic"],
+        // 0.1 + 0.7 is below 0.8 by round-off.
+        vec!["phase.0.duration=0.1", "phase.1={ duration = 0.7, steps = 1 }", "output.bulk_at=[0.8]"],
+        vec!["output.checkpoint_every=0", "output.interface_every=0"],
+        vec!["friction={ law = \"coulomb_tanh\", coefficient = 0, regularisation = 1 }"],
+    ] {
+        let scene = read_with(SMALLEST, &overrides).unwrap_or_else(|error| panic!("{overrides:?}: {error}"));
+        for moment in &scene.output.bulk_at {
+            assert!(!matches!(moment, When::Time(time) if *time > scene.duration()));
+        }
+    }
+}
+
+fn assert_round_trip(scene: &Scene) {
+    let text = scene.to_toml();
+    let again = read(&text, &Source { file: PathBuf::from("resolved.toml"), overrides: vec![] });
+    assert_eq!(again.as_ref(), Ok(scene), "{text}");
+}
+
+#[test]
+fn the_scenes_of_runs_are_read_and_resolved() {
+    let files = common::scenes("runs");
+    assert!(files.len() >= 5);
+    for file in files {
+        let text = std::fs::read_to_string(&file).unwrap();
+        assert_round_trip(&read(&text, &Source { file, overrides: vec![] }).unwrap_or_else(|error| panic!("{error}")));
+    }
+}
+
+/// A small generator (xorshift), so that a failure can be repeated.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: u64) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0 % n
+    }
+
+    fn unit(&mut self) -> f64 {
+        (self.below(1 << 53) as f64 + 0.5) / (1u64 << 53) as f64
+    }
+
+    /// Between 1e-4 and 1e4, and on every order between.
+    fn positive(&mut self) -> f64 {
+        10f64.powf(8.0 * self.unit() - 4.0)
+    }
+
+    fn of<T: Clone>(&mut self, choices: &[T]) -> T {
+        choices[self.below(choices.len() as u64) as usize].clone()
+    }
+
+    fn scene(&mut self) -> Scene {
+        let arms = self.below(4);
+        let wavelength = self.positive();
+        let count = 1 + self.below(4) as usize;
+        let phases: Vec<Phase> = (0..count).map(|index| self.phase(index)).collect();
+        let radius = self.positive();
+        let centre = self.unit() - 0.5;
+        let friction =
+            Friction::CoulombTanh { coefficient: 10.0 * self.unit(), regularisation: 1e-12 * self.positive() };
+        let ends = phases.iter().take(2).map(|phase| When::PhaseEnd(phase.name.clone()));
+        let times = [When::Time(phases[0].duration * self.unit())];
+        Scene {
+            title: self.of(&["", "plain", "é \"quoted\" \\ # = [layer]", "'''"]).to_owned(),
+            layer: Layer {
+                width: wavelength * (1 + self.below(9)) as f64,
+                depth: self.positive(),
+                cells: [2 + self.below(300) as usize, 1 + self.below(300) as usize],
+                grading: self.positive(),
+                sides: self.of(&[Sides::Periodic, Sides::Free, Sides::Roller, Sides::Fixed]),
+            },
+            material: Material {
+                shear_modulus: 1e9 * self.positive(),
+                poisson_ratio: 1.4 * self.unit() - 0.9,
+                arms: (0..arms).map(|_| Arm { weight: self.unit() / arms as f64, time: self.positive() }).collect(),
+                poisson_rule: Some(self.of(&[PoissonRule::ConstantRatio, PoissonRule::ConstantBulkModulus])),
+                memory: self.of(&[Memory::Exponential, Memory::BackwardEuler]),
+            },
+            indenter: self.of(&[
+                Indenter::Harmonic { amplitude: 1e-9 * radius, wavelength },
+                Indenter::Parabola { radius, centre },
+                Indenter::Circle { radius, centre },
+                Indenter::Wedge { slope: radius, centre },
+            ]),
+            contact: Contact {
+                penalty: 1e200 * self.positive(),
+                quadrature: self.of(&[Quadrature::Nodal, Quadrature::Gauss]),
+            },
+            friction: self.of(&[None, Some(friction)]),
+            output: Output {
+                interface_every: self.below(3) as usize,
+                bulk_at: if self.below(2) == 0 { vec![] } else { ends.chain(times).collect() },
+            },
+            phases,
+            solver: Solver {
+                strategy: self.of(&[Strategy::Auto, Strategy::Monolithic]),
+                tolerance: 1e-6 * self.unit(),
+            },
+        }
+    }
+
+    fn phase(&mut self, index: usize) -> Phase {
+        let tangential = Motion::Tangential { amplitude: self.unit() - 0.5, cycles: self.positive() };
+        let velocity = Motion::Velocity(self.unit() - 0.5);
+        Phase {
+            name: format!("{} {index}", self.of(&["a", "b.c", "\"", "7"])),
+            duration: self.positive(),
+            steps: 1 + self.below(1000) as usize,
+            approach: self.of(&[None, Some(-1.0), Some(9e-5)]),
+            motion: self.of(&[Motion::Velocity(0.0), velocity, tangential]),
+        }
+    }
+}
+
+#[test]
+fn resolved_scenes_read_back_equal() {
+    let mut random = Random(20200107);
+    for _ in 0..2000 {
+        assert_round_trip(&random.scene());
+    }
+}
