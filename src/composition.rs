@@ -13,7 +13,7 @@ use crate::mesh::{Layer, Sides};
 use crate::petsc::{Matrix, Settings, Vector};
 use crate::profile::{Circle, Harmonic, Parabola, Profile, Repeated, Wedge};
 use crate::rheology::{Arm, Memory, Prony};
-use crate::scene::{self, Scene};
+use crate::scene::{self, Scene, When};
 use crate::solve::{Body, Limits, Moduli, Monolithic};
 
 /// A scene made ready to run.
@@ -134,13 +134,11 @@ fn quadrature(quadrature: scene::Quadrature) -> Quadrature {
 
 /// The phases end to end, each from where the one before left the indenter; a step ends at every moment that bulk
 /// output asks for.
-fn phases(scene: &Scene) -> Vec<Phase> {
-    let moments: Vec<f64> = scene
-        .output
-        .bulk_at
-        .iter()
-        .filter_map(|when| if let scene::When::Time(t) = when { Some(*t) } else { None })
-        .collect();
+pub fn phases(scene: &Scene) -> Vec<Phase> {
+    let at = &scene.output.bulk_at;
+    let moment = |when: &When| if let When::Time(t) = when { Some(*t) } else { None };
+    let mut moments: Vec<f64> = at.iter().filter_map(moment).collect();
+    moments.sort_by(f64::total_cmp);
     let (mut start, mut approach, mut sliding) = (0.0, 0.0, 0.0);
     let mut list = Vec::with_capacity(scene.phases.len());
     for phase in &scene.phases {
@@ -149,6 +147,10 @@ fn phases(scene: &Scene) -> Vec<Phase> {
             scene::Motion::Velocity(v) => Motion::Velocity(v),
             scene::Motion::Tangential { amplitude, cycles } => Motion::Sinusoid { amplitude, cycles },
         };
+        let mut steps = loading::targets(start, phase.duration, phase.steps, &moments);
+        if let Some(last) = steps.last_mut() {
+            last.bulk_output |= at.contains(&When::PhaseEnd(phase.name.clone()));
+        }
         let phase = Phase {
             name: phase.name.clone(),
             start,
@@ -156,7 +158,7 @@ fn phases(scene: &Scene) -> Vec<Phase> {
             approach: [approach, to],
             sliding,
             motion,
-            steps: loading::targets(start, phase.duration, phase.steps, &moments),
+            steps,
         };
         (start, approach, sliding) = (phase.end(), to, phase.final_sliding());
         list.push(phase);

@@ -53,6 +53,8 @@ pub struct Target {
     pub time: f64,
     /// The planned length, s: bit for bit the same for all equal steps of a phase, so that what depends on it is kept.
     pub dt: f64,
+    /// Whether bulk fields are asked for here.
+    pub bulk_output: bool,
 }
 
 impl Phase {
@@ -89,26 +91,24 @@ impl Phase {
     }
 }
 
-/// The ends of `steps` equal steps over a phase, and at the moments `extra` (s, absolute) inside it.
-pub fn targets(start: f64, duration: f64, steps: usize, extra: &[f64]) -> Vec<Target> {
+/// The ends of `steps` equal steps over a phase. A step also ends, and is marked for bulk output, at each of the
+/// `moments` (s, absolute, ascending) inside the phase.
+pub fn targets(start: f64, duration: f64, steps: usize, moments: &[f64]) -> Vec<Target> {
     let nominal = duration / steps as f64;
-    let mut extra: Vec<f64> = extra.iter().copied().filter(|&t| t > start && t < start + duration).collect();
-    extra.sort_by(f64::total_cmp);
-    let mut extra = extra.into_iter().peekable();
+    // Two moments this close are one.
+    let near = 1e-9 * nominal;
+    let mut moments = moments.iter().copied().filter(|&t| t > start + near && t < start + duration + near).peekable();
     let mut list = Vec::with_capacity(steps);
     let mut last = start;
     for k in 1..=steps {
         let end = start + duration * (k as f64 / steps as f64);
-        let near = 1e-9 * nominal;
-        let mut split = false;
-        while let Some(t) = extra.next_if(|&t| t < end + near) {
-            if t > last + near && t < end - near {
-                list.push(Target { time: t, dt: t - last });
-                last = t;
-                split = true;
-            }
+        let mut dt = nominal;
+        while let Some(time) = moments.next_if(|&t| t < end - near) {
+            list.push(Target { time, dt: time - last, bulk_output: true });
+            (last, dt) = (time, end - time);
         }
-        list.push(Target { time: end, dt: if split { end - last } else { nominal } });
+        let bulk_output = moments.next_if(|&t| t <= end + near).is_some();
+        list.push(Target { time: end, dt, bulk_output });
         last = end;
     }
     list
@@ -121,11 +121,12 @@ mod tests {
     /// Equal steps have one length, bit for bit; an extra moment splits just its own step; the end is exact.
     #[test]
     fn targets_hit_every_moment() {
-        let list = targets(1.0, 0.7, 7, &[1.25, 0.5, 1.3, 9.0]);
+        let list = targets(1.0, 0.7, 7, &[0.5, 1.25, 1.3, 9.0]);
         assert_eq!(list.len(), 8);
         assert_eq!(list.iter().filter(|target| target.dt == 0.7 / 7.0).count(), 6);
-        assert_eq!(list[2], Target { time: 1.25, dt: 1.25 - list[1].time });
-        assert_eq!(list[7].time, 1.0 + 0.7);
+        assert_eq!(list[2], Target { time: 1.25, dt: 1.25 - list[1].time, bulk_output: true });
+        let marked: Vec<usize> = (0..8).filter(|&i| list[i].bulk_output).collect();
+        assert_eq!((marked, list[7].time), (vec![2, 3], 1.0 + 0.7));
     }
 
     /// The sliding rate over a step is the difference quotient, also for a sinusoid.

@@ -101,14 +101,15 @@ impl Implicit for Driver<'_> {
     fn accepted(&mut self, accepted: Accepted, u: &Vector) -> Result<Next> {
         self.problem.commit(accepted.step, u)?;
         let phase = self.phase;
-        let end = self.phases[phase].steps[self.target].time;
+        let target = self.phases[phase].steps[self.target];
         self.now = accepted.step.t;
         let next = self.next(accepted.step.dt);
         let report = Report {
             phase,
             time: self.now,
-            planned: self.now == end,
+            planned: self.now == target.time,
             phase_end: self.phase != phase,
+            bulk_output: target.bulk_output && self.now == target.time,
             newton: accepted.newton,
             problem: &mut *self.problem,
             u,

@@ -83,6 +83,8 @@ pub struct Report<'a> {
     pub planned: bool,
     /// Whether the phase ends here.
     pub phase_end: bool,
+    /// Whether bulk fields are asked for here.
+    pub bulk_output: bool,
     /// Newton iterations of the step.
     pub newton: usize,
     /// The problem, to be asked for fields.

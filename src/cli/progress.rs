@@ -1,0 +1,100 @@
+//! The progress of a run: a bar on a terminal, plain lines otherwise.
+
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// Plain lines come no closer than this, but for the ends of phases.
+const LINE_EVERY: Duration = Duration::from_secs(5);
+
+/// Shows how far a run has come.
+pub enum Progress {
+    /// On ranks that show nothing.
+    Silent,
+    /// A bar that is redrawn.
+    Bar(ProgressBar),
+    /// A line now and then.
+    Lines {
+        /// Planned steps in all.
+        total: usize,
+        /// When the last line was printed.
+        last: Instant,
+    },
+}
+
+/// What is shown of a step.
+pub struct Stage<'a> {
+    /// Planned steps done.
+    pub done: usize,
+    /// The phase.
+    pub phase: &'a str,
+    /// s
+    pub time: f64,
+    /// N/m
+    pub normal_force: f64,
+    /// N/m
+    pub tangential_force: f64,
+    /// Newton iterations of the step.
+    pub newton: usize,
+    /// Whether the phase ends here.
+    pub phase_end: bool,
+}
+
+impl Progress {
+    /// For a run of `total` planned steps; `shown` on one rank.
+    pub fn new(total: usize, shown: bool) -> Self {
+        if !shown {
+            return Self::Silent;
+        }
+        let Some(target) = terminal() else {
+            return Self::Lines { total, last: Instant::now() };
+        };
+        let bar = ProgressBar::with_draw_target(Some(total as u64), target);
+        // A template that is wrong is a defect that the default one survives.
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len}  {msg}  {elapsed} (left {eta})") {
+            bar.set_style(style);
+        }
+        Self::Bar(bar)
+    }
+
+    /// Shows a step.
+    pub fn show(&mut self, stage: &Stage<'_>) {
+        let text = format!(
+            "{} t = {:.4e} s  N = {:.5e}  Q = {:.5e} N/m  {} Newton",
+            stage.phase, stage.time, stage.normal_force, stage.tangential_force, stage.newton
+        );
+        match self {
+            Self::Silent => {}
+            Self::Bar(bar) => {
+                bar.set_position(stage.done as u64);
+                bar.set_message(text);
+            }
+            Self::Lines { total, last } => {
+                if stage.phase_end || last.elapsed() >= LINE_EVERY {
+                    println!("{}/{total}  {text}", stage.done);
+                    *last = Instant::now();
+                }
+            }
+        }
+    }
+
+    /// Leaves the terminal as it was.
+    pub fn finish(&self) {
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// Where a bar can be drawn: standard error when it is a terminal; under Open MPI's mpirun, which gives its children a
+/// pseudo-terminal as standard output in any case, that output when mpirun's own is a terminal.
+fn terminal() -> Option<ProgressDrawTarget> {
+    if std::io::stderr().is_terminal() {
+        return Some(ProgressDrawTarget::stderr());
+    }
+    let launcher = std::env::var("OMPI_COMM_WORLD_RANK").ok().map(|_| std::os::unix::process::parent_id())?;
+    let output = std::fs::read_link(format!("/proc/{launcher}/fd/1")).ok()?;
+    let is_terminal = output.starts_with("/dev/pts") || output.starts_with("/dev/tty");
+    (is_terminal && std::io::stdout().is_terminal()).then(ProgressDrawTarget::stdout)
+}

@@ -1,0 +1,100 @@
+//! What a scene models and costs, and what a run did, in words.
+
+use std::fmt::Write;
+
+use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides};
+
+/// What is modelled and what is not: (modelled, not modelled).
+pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
+    let (mut yes, mut no) = (Vec::new(), Vec::new());
+    let arms = scene.material.arms.len();
+    match (arms, scene.material.poisson_rule) {
+        (0, _) => no.push("memory (linear elastic)".to_owned()),
+        (_, Some(PoissonRule::ConstantBulkModulus)) => {
+            yes.push(format!("viscoelastic memory: {arms} arm(s) of the shear modulus, constant bulk modulus"));
+        }
+        _ => yes.push(format!("viscoelastic memory: {arms} arm(s), constant Poisson ratio")),
+    }
+    match scene.friction {
+        Some(Friction::CoulombTanh { coefficient, regularisation }) => {
+            yes.push(format!("friction: f = {coefficient}, regularised by tanh over {regularisation} m/s"));
+        }
+        None => no.push("friction (symmetric solver)".to_owned()),
+    }
+    yes.push(format!(
+        "contact: penalty {:.3e} Pa/m, {} quadrature",
+        scene.contact.penalty,
+        match scene.contact.quadrature {
+            Quadrature::Nodal => "nodal",
+            Quadrature::Gauss => "two-point Gauss",
+        }
+    ));
+    if scene.output.bulk_at.is_empty() {
+        no.push("stress recovery and bulk output".to_owned());
+    } else {
+        yes.push(format!("stress recovery and bulk output at {} moment(s)", scene.output.bulk_at.len()));
+    }
+    no.push("inertia, large strains, thermal effects".to_owned());
+    (yes, no)
+}
+
+/// What `mpjr check` prints after the resolved scene.
+pub fn plan(scene: &Scene) -> String {
+    let (yes, no) = modelled(scene);
+    let estimate = Estimate::of(scene);
+    let [nx, nz] = scene.layer.cells;
+    let sides = match scene.layer.sides {
+        Sides::Periodic => "periodic",
+        Sides::Free => "free",
+        Sides::Roller => "roller",
+        Sides::Fixed => "fixed",
+    };
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "modelled:      {}", yes.join("\n               "));
+    let _ = writeln!(text, "not modelled:  {}", no.join("\n               "));
+    let _ = writeln!(text, "mesh:          {nx} x {nz} cells, {sides} sides, {} unknowns", scene.unknowns());
+    let _ = writeln!(text, "loading:       {} phase(s), {} steps, {:.6} s", scene.phases.len(), scene.steps(), scene.duration());
+    let _ = writeln!(text, "strategy:      monolithic: all unknowns in one sparse system, factorised at each Newton iteration");
+    let _ = write!(
+        text,
+        "estimate:      {} per step, {} in all on one core; {:.1} GB of memory",
+        seconds(estimate.step),
+        seconds(estimate.step * scene.steps() as f64),
+        estimate.memory / 1e9
+    );
+    text
+}
+
+/// A rough cost, from measured factorisation times of 2-D meshes: within a factor of three on a recent core.
+struct Estimate {
+    /// s per step.
+    step: f64,
+    /// bytes
+    memory: f64,
+}
+
+impl Estimate {
+    fn of(scene: &Scene) -> Self {
+        let unknowns = scene.unknowns() as f64;
+        // Nested dissection in the plane: n^1.5 operations, n log n entries. Half for a symmetric factorisation.
+        let symmetry = if scene.friction.is_some() { 1.0 } else { 0.6 };
+        let newton = 3.5;
+        let factorisation = 1.3e-8 * unknowns.powf(1.5) * symmetry;
+        let assembly = 1.0e-6 * unknowns;
+        let entries = 5.0 * unknowns * unknowns.max(2.0).log2() * symmetry;
+        let matrices = 3.0 * 18.0 * 12.0 * unknowns;
+        Self { step: newton * (factorisation + assembly), memory: 5e7 + 8.0 * entries + matrices }
+    }
+}
+
+/// A duration for people.
+pub fn seconds(s: f64) -> String {
+    match s {
+        s if s < 1e-3 => format!("{:.0} us", s * 1e6),
+        s if s < 1.0 => format!("{:.0} ms", s * 1e3),
+        s if s < 120.0 => format!("{s:.1} s"),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
