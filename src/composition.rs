@@ -9,17 +9,17 @@ use crate::error::Result;
 use crate::friction::Friction;
 use crate::interface::{Interface, Laws};
 use crate::loading::{self, Motion, Phase};
-use crate::mesh::{Layer, Sides};
+use crate::mesh::{Layer, Mesh, Sides};
 use crate::petsc::{Matrix, Settings, Vector};
 use crate::profile::{Circle, Harmonic, Parabola, Profile, Repeated, Wedge};
 use crate::rheology::{Arm, Memory, Prony};
 use crate::scene::{self, Scene, When};
-use crate::solve::{Body, Limits, Moduli, Monolithic};
+use crate::solve::{Body, Limits, Moduli, Monolithic, TransientProblem};
 
 /// A scene made ready to run.
 pub struct Problem {
-    /// The discretised problem.
-    pub monolithic: Monolithic,
+    /// The discretised problem, in the form that the scene's strategy gives it.
+    pub strategy: Box<dyn TransientProblem>,
     /// Its tangent.
     pub tangent: Matrix,
     /// Its solution, at rest.
@@ -29,7 +29,7 @@ pub struct Problem {
     /// How TS and SNES are set.
     pub settings: Settings,
     /// The body's mesh, for output.
-    pub mesh: crate::mesh::Mesh,
+    pub mesh: Mesh,
 }
 
 /// Builds what `scene` asks for, distributed over `comm`.
@@ -54,8 +54,8 @@ pub fn build(comm: &SimpleCommunicator, scene: &Scene) -> Result<Problem> {
     }
     let limits = Limits::default();
     let settings = Settings { symmetric, max_newton: limits.max_newton, max_cuts: limits.max_cuts };
-    let monolithic = Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?;
-    Ok(Problem { monolithic, tangent, u, phases: phases(scene), settings, mesh })
+    let strategy = Box::new(Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?);
+    Ok(Problem { strategy, tangent, u, phases: phases(scene), settings, mesh })
 }
 
 fn layer(layer: &scene::Layer) -> Layer {
@@ -79,10 +79,8 @@ fn bulk(scene: &Scene, body: &Body, moduli: Moduli, layout: &Vector) -> Result<B
     let material = &scene.material;
     let prony = Prony { arms: material.arms.iter().map(|a| Arm { weight: a.weight, time: a.time }).collect() };
     let times = prony.arms.iter().map(|arm| arm.time).collect();
-    let series = (!prony.arms.is_empty()).then(|| Series {
-        long_term: prony.long_term(),
-        weights: prony.arms.iter().map(|arm| arm.weight).collect(),
-    });
+    let series = (!prony.arms.is_empty())
+        .then(|| Series { long_term: prony.long_term(), weights: prony.arms.iter().map(|arm| arm.weight).collect() });
     let part = |moduli, diagonal, series| Ok(Part { stiffness: body.stiffness(moduli, diagonal)?, series });
     let constant_bulk = material.poisson_rule == Some(scene::PoissonRule::ConstantBulkModulus);
     let parts = if constant_bulk && series.is_some() {

@@ -1,6 +1,7 @@
 //! Parallel transient viscoelastic contact with friction, by interface finite elements with embedded profiles (MPJR).
 
 pub mod bulk;
+pub mod cli;
 pub mod composition;
 pub mod element;
 pub mod error;
@@ -8,6 +9,8 @@ pub mod friction;
 pub mod interface;
 pub mod loading;
 pub mod mesh;
+pub mod output;
+pub mod parallel;
 pub mod petsc;
 pub mod profile;
 pub mod rheology;

@@ -2,6 +2,7 @@
 
 mod check;
 mod progress;
+mod record;
 mod run;
 mod summary;
 

@@ -1,8 +1,12 @@
 //! What a scene models and costs, and what a run did, in words.
 
 use std::fmt::Write;
+use std::time::Duration;
 
+use crate::output::{HistoryRow, Status};
+use crate::petsc;
 use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides};
+use crate::solve::Counts;
 
 /// What is modelled and what is not: (modelled, not modelled).
 pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
@@ -54,14 +58,81 @@ pub fn plan(scene: &Scene) -> String {
     let _ = writeln!(text, "modelled:      {}", yes.join("\n               "));
     let _ = writeln!(text, "not modelled:  {}", no.join("\n               "));
     let _ = writeln!(text, "mesh:          {nx} x {nz} cells, {sides} sides, {} unknowns", scene.unknowns());
-    let _ = writeln!(text, "loading:       {} phase(s), {} steps, {:.6} s", scene.phases.len(), scene.steps(), scene.duration());
-    let _ = writeln!(text, "strategy:      monolithic: all unknowns in one sparse system, factorised at each Newton iteration");
+    let _ = writeln!(
+        text,
+        "loading:       {} phase(s), {} steps, {:.6} s",
+        scene.phases.len(),
+        scene.steps(),
+        scene.duration()
+    );
+    let _ = writeln!(
+        text,
+        "strategy:      monolithic: all unknowns in one sparse system, factorised at each Newton iteration"
+    );
     let _ = write!(
         text,
         "estimate:      {} per step, {} in all on one core; {:.1} GB of memory",
         seconds(estimate.step),
         seconds(estimate.step * scene.steps() as f64),
         estimate.memory / 1e9
+    );
+    text
+}
+
+/// What a run did.
+pub struct Outcome {
+    /// How it ended.
+    pub status: Status,
+    /// MPI ranks.
+    pub ranks: i32,
+    /// Up to the first step.
+    pub setup: Duration,
+    /// From start to end.
+    pub total: Duration,
+    /// Steps, iterations and their times.
+    pub counts: Counts,
+}
+
+/// What `mpjr run` prints at the end; `last` is the last row of the history.
+pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
+    let Outcome { status, ranks, setup, total, counts } = outcome;
+    let (yes, no) = modelled(scene);
+    let blas = match petsc::blas_library() {
+        "reference" => "reference BLAS (install libopenblas0-pthread: 2 to 5 times faster)",
+        name => name,
+    };
+    let linear = counts.total.saturating_sub(counts.assembly + counts.output);
+    let duration = |time: &Duration| seconds(time.as_secs_f64());
+    let pieces = match counts.pieces {
+        0 => String::new(),
+        pieces => format!(", {pieces} of them pieces of steps that were cut"),
+    };
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{:<15}{} at t = {:.6} s", "status:", status.as_str(), last.time);
+    let _ = writeln!(text, "{:<15}{}", "modelled:", yes.join("; "));
+    let _ = writeln!(text, "{:<15}{}", "not modelled:", no.join("; "));
+    let _ = writeln!(
+        text,
+        "{:<15}N = {:.6e}  Q = {:.6e}  hysteretic = {:.6e} N/m",
+        "final forces:", last.normal_force, last.tangential_force, last.hysteretic_force
+    );
+    let _ = writeln!(
+        text,
+        "{:<15}{:.4} of the face, {:.4} of it sticking; largest penetration {:.3e} m",
+        "final contact:", last.contact_fraction, last.stick_fraction, last.max_penetration
+    );
+    let _ = writeln!(text, "{:<15}{} steps, {} Newton iterations{pieces}", "work:", counts.steps, counts.newton);
+    let _ = writeln!(
+        text,
+        "{:<15}{} on {ranks} rank(s): set-up {}, assembly {}, linear solver {}, output {}; {blas}; peak {:.2} GB a rank",
+        "time:",
+        duration(total),
+        duration(setup),
+        duration(&counts.assembly),
+        duration(&linear),
+        duration(&counts.output),
+        petsc::peak_memory() as f64 / 1e9
     );
     text
 }

@@ -126,7 +126,7 @@ impl Body {
         let mut fields = BulkFields::default();
         for (node, &unknown) in self.mesh.unknown.iter().enumerate() {
             if let Some(local) = self.numbering.local(unknown) {
-                fields.nodes.push(node as u32);
+                fields.nodes.push(node);
                 fields.displacement.push([values[2 * local], values[2 * local + 1]]);
                 fields.stress.push((sums[local].0 / sums[local].1).into());
             }

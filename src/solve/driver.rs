@@ -1,5 +1,7 @@
 //! Steps a problem through its loading history under PETSc's TS.
 
+use std::time::{Duration, Instant};
+
 use mpi::topology::SimpleCommunicator;
 
 use super::{Observer, Report, TransientProblem};
@@ -31,12 +33,30 @@ pub struct Driver<'a> {
     target: usize,
     /// The end of the last accepted step, s.
     now: f64,
+    counts: Counts,
+}
+
+/// What a run took.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Counts {
+    /// Accepted steps.
+    pub steps: usize,
+    /// Accepted steps that were pieces of a planned one.
+    pub pieces: usize,
+    /// Newton iterations, those of rejected attempts included.
+    pub newton: usize,
+    /// Residuals and tangents.
+    pub assembly: Duration,
+    /// What the observer took.
+    pub output: Duration,
+    /// All of it, from the first step to the last.
+    pub total: Duration,
 }
 
 impl<'a> Driver<'a> {
     /// A driver at the beginning of the history.
     pub fn new(problem: &'a mut dyn TransientProblem, observer: &'a mut dyn Observer, phases: &'a [Phase]) -> Self {
-        Self { problem, observer, phases, phase: 0, target: 0, now: 0.0 }
+        Self { problem, observer, phases, phase: 0, target: 0, now: 0.0, counts: Counts::default() }
     }
 
     /// Runs the whole history from rest; `u` ends as the last accepted state.
@@ -44,7 +64,7 @@ impl<'a> Driver<'a> {
     /// # Errors
     /// [`Error::Solver`] when a step fails after all cuts; what was accepted before has been observed.
     pub fn run(
-        mut self,
+        &mut self,
         comm: &SimpleCommunicator,
         settings: Settings,
         tangent: &mut Matrix,
@@ -53,14 +73,18 @@ impl<'a> Driver<'a> {
         let Some(first) = self.phases.first() else { return Ok(()) };
         let start = Step { t: first.steps[0].time, dt: first.steps[0].dt };
         self.problem.begin(first.clone());
-        let report =
-            Report { phase: 0, time: 0.0, planned: true, phase_end: false, newton: 0, problem: &mut *self.problem, u };
-        self.observer.observe(report)?;
-        let outcome = Integrator::new(comm, settings)?.solve(&mut self, tangent, u, start);
+        let begun = Instant::now();
+        let outcome = Integrator::new(comm, settings)?.solve(self, tangent, u, start);
+        self.counts.total = begun.elapsed();
         outcome.map_err(|error| match error {
             Error::Solver(text) => Error::Solver(format!("phase {:?}: {text}", self.phases[self.phase].name)),
             other => other,
         })
+    }
+
+    /// What the run took so far.
+    pub fn counts(&self) -> Counts {
+        self.counts
     }
 
     /// The step after one that ended at `now` and was `dt` long.
@@ -87,11 +111,17 @@ impl<'a> Driver<'a> {
 
 impl Implicit for Driver<'_> {
     fn residual(&mut self, step: Step, u: &Vector, rate: &Vector, f: &mut Vector) -> Result<()> {
-        self.problem.residual(step, u, rate, f)
+        let begun = Instant::now();
+        let outcome = self.problem.residual(step, u, rate, f);
+        self.counts.assembly += begun.elapsed();
+        outcome
     }
 
     fn jacobian(&mut self, step: Step, u: &Vector, rate: &Vector, jacobian: &mut Matrix) -> Result<()> {
-        self.problem.tangent(step, u, rate, jacobian)
+        let begun = Instant::now();
+        let outcome = self.problem.tangent(step, u, rate, jacobian);
+        self.counts.assembly += begun.elapsed();
+        outcome
     }
 
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
@@ -114,7 +144,12 @@ impl Implicit for Driver<'_> {
             problem: &mut *self.problem,
             u,
         };
+        self.counts.steps += 1;
+        self.counts.pieces += usize::from(!report.planned);
+        self.counts.newton += accepted.newton;
+        let begun = Instant::now();
         self.observer.observe(report)?;
+        self.counts.output += begun.elapsed();
         Ok(next)
     }
 }

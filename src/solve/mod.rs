@@ -10,7 +10,7 @@ use crate::loading::{Phase, Placement};
 use crate::petsc::{Matrix, Step, Vector, Verdict};
 
 pub use body::{Body, Moduli};
-pub use driver::{Driver, Limits};
+pub use driver::{Counts, Driver, Limits};
 pub use monolithic::Monolithic;
 
 /// A discretised contact problem in a form that TS and SNES can step.
@@ -60,14 +60,14 @@ impl Contact<'_> {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct BulkFields {
     /// Mesh nodes that this rank supplies.
-    pub nodes: Vec<u32>,
+    pub nodes: Vec<usize>,
     /// Displacement x, z, m.
     pub displacement: Vec<[f64; 2]>,
     /// Stress xx, zz, yy, xz, Pa, tension positive.
     pub stress: Vec<[f64; 4]>,
 }
 
-/// What the driver tells of each accepted step, and of the unloaded state before the first.
+/// Who is told of each accepted step.
 pub trait Observer {
     /// Called on all ranks after each accepted step.
     fn observe(&mut self, report: Report<'_>) -> Result<()>;

@@ -1,4 +1,7 @@
-//! What several tests need: the scenes that must be refused, and what they must say.
+//! Shared by the integration tests; each uses a part of it.
+#![allow(dead_code)]
+
+pub mod mpi;
 
 use std::path::{Path, PathBuf};
 
@@ -64,3 +67,5 @@ pub fn scenes(path: &str) -> Vec<PathBuf> {
 pub fn bad_scenes() -> Vec<BadScene> {
     scenes("tests/scenes/bad").into_iter().map(BadScene::load).collect()
 }
+
+pub mod sample;

@@ -1,0 +1,210 @@
+//! Bulk fields, written collectively: values go to the rank that holds their block of nodes, and each rank writes its
+//! block. The order of nodes in the file is that of the mesh, whatever the number of ranks.
+
+use std::ffi::OsStr;
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::fs::FileExt;
+use std::path::{Path, PathBuf};
+use std::sync::MutexGuard;
+
+use mpi::Count;
+use mpi::datatype::{Partition, PartitionMut};
+use mpi::traits::{Communicator, CommunicatorCollectives, Equivalence};
+
+use super::columns::BULK;
+use super::recorder::State;
+use super::store::Table;
+use super::{Recorder, xdmf};
+use crate::error::{Error, Result};
+use crate::parallel::{agree, broadcast};
+use crate::petsc::collective_write::SharedFile;
+
+/// Numbers per node: displacement x, z; stress xx, zz, yy, xz.
+const PER_NODE: usize = 6;
+/// How many of them are displacement.
+const DISPLACEMENT: usize = 2;
+
+/// One rank's part of the fields. Each node of the mesh must be given by at least one rank; where several ranks give
+/// it, one of them counts.
+#[derive(Debug, Clone, Copy)]
+pub struct Frame<'a> {
+    /// Time, s.
+    pub time: f64,
+    /// Indices into [`BulkPlan::coordinates`](super::BulkPlan::coordinates), in any order.
+    pub nodes: &'a [usize],
+    /// Displacement x, z of these nodes, m.
+    pub displacement: &'a [[f64; 2]],
+    /// Stress xx, zz, yy, xz at these nodes, Pa, tension positive.
+    pub stress: &'a [[f64; 4]],
+}
+
+/// Where a frame goes; known to the recorder's rank and told to the others.
+struct Target {
+    path: PathBuf,
+    nodes: usize,
+    /// Where displacement and stress of the frame begin in the file.
+    at: [u64; 2],
+}
+
+/// Adds a frame to `/bulk` and brings the XDMF file up to date. Collective; rank 0 of `comm` gives the recorder.
+/// Rows of the history that wait are written first. All ranks return the same outcome.
+pub fn write<C>(comm: &C, recorder: Option<&Recorder>, frame: &Frame) -> Result<()>
+where
+    C: Communicator + CommunicatorCollectives,
+{
+    let mut held = recorder.filter(|_| comm.rank() == 0).map(Recorder::lock);
+    let target = announce(comm, held.as_mut())?;
+    let block = agree(comm, check(frame, target.nodes)).map(|()| redistribute(comm, frame, target.nodes))?;
+    let block = agree(comm, block)?;
+    write_block(comm, &target, &block)?;
+    agree(comm, held.as_mut().map_or(Ok(()), |state| commit(state, frame.time)))
+}
+
+/// Makes room for a frame and tells all ranks where it is.
+fn announce<C>(comm: &C, held: Option<&mut MutexGuard<State>>) -> Result<Target>
+where
+    C: Communicator + CommunicatorCollectives,
+{
+    let mine = match held {
+        Some(state) => reserve(state),
+        None if comm.rank() == 0 => Err(Error::Internal("bulk fields without a recorder on rank 0".into())),
+        None => Ok(Target { path: PathBuf::new(), nodes: 0, at: [0; 2] }),
+    };
+    let mine = agree(comm, mine)?;
+    let mut path = mine.path.as_os_str().as_bytes().to_vec();
+    broadcast(comm, 0, &mut path);
+    let mut numbers = [mine.nodes as u64, mine.at[0], mine.at[1]].map(u64::to_ne_bytes).concat();
+    broadcast(comm, 0, &mut numbers);
+    let number = |index: usize| numbers.as_chunks().0.get(index).map_or(0, |bytes| u64::from_ne_bytes(*bytes));
+    Ok(Target {
+        path: Path::new(OsStr::from_bytes(&path)).to_owned(),
+        nodes: number(0) as usize,
+        at: [number(1), number(2)],
+    })
+}
+
+fn reserve(state: &mut State) -> Result<Target> {
+    state.check()?;
+    let Some(mesh) = state.mesh else {
+        return Err(Error::Internal("bulk fields that were not planned".into()));
+    };
+    state.flush()?;
+    state.make_room(Table::Bulk, 1)?;
+    let store = &state.store;
+    // Also checks that the path still leads to the file.
+    drop(store.open()?);
+    let row = store.rows(Table::Bulk);
+    let at = [store.row_at(Table::Bulk, 0, row)?, store.row_at(Table::Bulk, 1, row)?];
+    Ok(Target { path: store.path().to_owned(), nodes: mesh.nodes, at })
+}
+
+fn check(frame: &Frame, nodes: usize) -> Result<()> {
+    let given = frame.nodes.len();
+    if frame.displacement.len() != given || frame.stress.len() != given {
+        return Err(Error::Internal("bulk fields and nodes differ in number".into()));
+    }
+    match frame.nodes.iter().find(|&&node| node >= nodes) {
+        Some(node) => Err(Error::Internal(format!("bulk fields at node {node} of {nodes}"))),
+        None => Ok(()),
+    }
+}
+
+/// The nodes that a rank writes: whole blocks of equal length, the last ones shorter or empty.
+struct Block {
+    first: usize,
+    displacement: Vec<f64>,
+    stress: Vec<f64>,
+}
+
+/// Sends every value to the rank that writes it.
+fn redistribute<C>(comm: &C, frame: &Frame, nodes: usize) -> Result<Block>
+where
+    C: Communicator + CommunicatorCollectives,
+{
+    let (rank, ranks) = (comm.rank() as usize, comm.size() as usize);
+    let length = nodes.div_ceil(ranks).max(1);
+    let mut order: Vec<usize> = (0..frame.nodes.len()).collect();
+    order.sort_by_key(|&local| frame.nodes[local]);
+    let mut counts = vec![0; ranks];
+    let mut indices = Vec::with_capacity(order.len());
+    let mut values = Vec::with_capacity(order.len() * PER_NODE);
+    for local in order {
+        counts[frame.nodes[local] / length] += 1;
+        indices.push(frame.nodes[local] as u64);
+        values.extend_from_slice(&frame.displacement[local]);
+        values.extend_from_slice(&frame.stress[local]);
+    }
+    let mut incoming: Vec<Count> = vec![0; ranks];
+    comm.all_to_all_into(&counts[..], &mut incoming[..]);
+    let indices = exchange(comm, &indices, &counts, &incoming, 1);
+    let values = exchange(comm, &values, &counts, &incoming, PER_NODE);
+
+    let first = (rank * length).min(nodes);
+    let mine = (first + length).min(nodes) - first;
+    let mut block =
+        Block { first, displacement: vec![f64::NAN; mine * DISPLACEMENT], stress: vec![f64::NAN; mine * 4] };
+    let mut seen = vec![false; mine];
+    for (&node, numbers) in indices.iter().zip(values.as_chunks::<PER_NODE>().0) {
+        let at = node as usize - first;
+        let (displacement, stress) = numbers.split_at(DISPLACEMENT);
+        block.displacement[at * 2..at * 2 + 2].copy_from_slice(displacement);
+        block.stress[at * 4..at * 4 + 4].copy_from_slice(stress);
+        seen[at] = true;
+    }
+    match seen.iter().position(|seen| !seen) {
+        Some(missing) => Err(Error::Internal(format!("no rank has the bulk fields at node {}", first + missing))),
+        None => Ok(block),
+    }
+}
+
+/// All-to-all of `width` numbers for each of `counts` items.
+fn exchange<C, T>(comm: &C, out: &[T], counts: &[Count], incoming: &[Count], width: usize) -> Vec<T>
+where
+    C: Communicator + CommunicatorCollectives,
+    T: Equivalence + Default + Clone,
+{
+    let scaled = |counts: &[Count]| counts.iter().map(|count| count * width as Count).collect::<Vec<_>>();
+    let starts = |counts: &[Count]| {
+        counts.iter().scan(0, |total, count| Some(std::mem::replace(total, *total + count))).collect::<Vec<Count>>()
+    };
+    let (counts, incoming) = (scaled(counts), scaled(incoming));
+    let mut received = vec![T::default(); incoming.iter().sum::<Count>() as usize];
+    let send = Partition::new(out, &counts[..], starts(&counts));
+    let displacements = starts(&incoming);
+    comm.all_to_all_varcount_into(&send, &mut PartitionMut::new(&mut received[..], &incoming[..], displacements));
+    received
+}
+
+/// The collective write proper.
+fn write_block<C>(comm: &C, target: &Target, block: &Block) -> Result<()>
+where
+    C: Communicator + CommunicatorCollectives,
+{
+    let failed =
+        |reason| Error::file(&target.path, format!("bulk fields: {reason}; the rows up to the last write are kept"));
+    let opened = SharedFile::open(comm, &target.path);
+    if let Err(error) = agree(comm, opened.as_ref().map(|_| ()).map_err(|reason| failed(reason.clone()))) {
+        // Closing is collective and would wait for the ranks that have nothing to close.
+        std::mem::forget(opened);
+        return Err(error);
+    }
+    let file = opened.map_err(failed)?;
+    let mut outcome = Ok(());
+    for ((field, values), start) in BULK.iter().zip([&block.displacement, &block.stress]).zip(target.at) {
+        let offset = start + (block.first * field.components.len() * size_of::<f64>()) as u64;
+        // Every rank takes part in every write, also after an error.
+        outcome = outcome.and(file.write_at_all(offset, values));
+    }
+    agree(comm, outcome.and(file.close()).map_err(failed))
+}
+
+/// Makes the frame visible.
+fn commit(state: &mut State, time: f64) -> Result<()> {
+    let store = &mut state.store;
+    let file = store.open()?;
+    let at = store.row_at(Table::Bulk, BULK.len(), store.rows(Table::Bulk))?;
+    file.write_all_at(&time.to_ne_bytes(), at).map_err(|error| store.failed(error))?;
+    store.commit(&file, &[(Table::Bulk, 1)])?;
+    state.bulk_times.push(time);
+    state.mesh.map_or(Ok(()), |mesh| xdmf::write(state.store.path(), &state.version, mesh, &state.bulk_times))
+}

@@ -1,0 +1,161 @@
+//! The one place that names what is recorded: history columns, interface fields, bulk fields. A new column is one line.
+
+/// One row of `/history`: the state at the end of an accepted step (row 0: the unloaded state). Forces are per unit
+/// thickness (N/m). The default is the unloaded state at t = 0.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct HistoryRow {
+    /// Time, s.
+    pub time: f64,
+    /// Index of the phase that the step belongs to; row 0 belongs to phase 0.
+    pub phase: usize,
+    /// Imposed normal approach of the indenter, m.
+    pub approach: f64,
+    /// Imposed tangential displacement of the indenter, m.
+    pub sliding: f64,
+    /// N_z = ∫ p dx, N/m, compression positive.
+    pub normal_force: f64,
+    /// Q_x = ∫ q dx, N/m, traction on the layer, positive along +x.
+    pub tangential_force: f64,
+    /// ∫ p ∂h/∂x dx, N/m, with h at its present position.
+    pub hysteretic_force: f64,
+    /// Share of the contact face that is in contact.
+    pub contact_fraction: f64,
+    /// Share of the contact that sticks.
+    pub stick_fraction: f64,
+    /// Largest penetration, m, positive.
+    pub max_penetration: f64,
+    /// Newton iterations that the step took.
+    pub newton_iterations: usize,
+    /// The energy balance; recorded only when [`Plan::energy`](super::Plan::energy) is set.
+    pub energy: Energy,
+}
+
+/// The energy balance, J/m, cumulative from t = 0.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Energy {
+    /// Supplied by the indenter.
+    pub external_work: f64,
+    /// Stored in the springs of the layer.
+    pub stored: f64,
+    /// Dissipated in the Prony arms.
+    pub viscoelastic_dissipation: f64,
+    /// Dissipated by friction.
+    pub friction_dissipation: f64,
+    /// Stored in the penalty.
+    pub penalty: f64,
+    /// What the others leave over.
+    pub imbalance: f64,
+}
+
+/// One row of the fields under `/interface`; every field has one value for each node of the contact face, in the
+/// order of [`Plan::interface_x`](super::Plan::interface_x).
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct InterfaceFrame {
+    /// Time, s.
+    pub time: f64,
+    /// Contact pressure, Pa, positive in compression.
+    pub pressure: Vec<f64>,
+    /// Tangential traction on the layer, Pa, positive along +x.
+    pub shear: Vec<f64>,
+    /// Normal gap, m, negative where the indenter penetrates.
+    pub gap: Vec<f64>,
+    /// Slip rate, m/s.
+    pub slip_rate: Vec<f64>,
+    /// Displacement of the face along x, m.
+    pub displacement_x: Vec<f64>,
+    /// Displacement of the face along z, m.
+    pub displacement_z: Vec<f64>,
+}
+
+/// How a history column gets its number out of a row; also the type it has in the file (float64 or int64).
+pub(super) enum Value {
+    Real(fn(&HistoryRow) -> f64),
+    Count(fn(&HistoryRow) -> usize),
+}
+
+/// A column of the history.
+pub(super) struct Column {
+    pub name: &'static str,
+    pub units: &'static str,
+    pub long_name: &'static str,
+    pub value: Value,
+}
+
+const fn real(
+    name: &'static str,
+    units: &'static str,
+    long_name: &'static str,
+    value: fn(&HistoryRow) -> f64,
+) -> Column {
+    Column { name, units, long_name, value: Value::Real(value) }
+}
+
+const fn count(name: &'static str, long_name: &'static str, value: fn(&HistoryRow) -> usize) -> Column {
+    Column { name, units: "1", long_name, value: Value::Count(value) }
+}
+
+/// The columns of `/history`. `time` is the last: the lengths reach the file in this order (see [`super`]).
+#[rustfmt::skip]
+pub(super) const HISTORY: &[Column] = &[
+    count("phase", "index of the phase, see the attribute names", |r| r.phase),
+    real("approach", "m", "imposed normal approach of the indenter", |r| r.approach),
+    real("sliding", "m", "imposed tangential displacement of the indenter", |r| r.sliding),
+    real("normal_force", "N/m", "normal force per unit thickness, compression positive", |r| r.normal_force),
+    real("tangential_force", "N/m", "tangential force on the layer per unit thickness, positive along +x", |r| r.tangential_force),
+    real("hysteretic_force", "N/m", "integral of pressure times slope of the profile, per unit thickness", |r| r.hysteretic_force),
+    real("contact_fraction", "1", "share of the contact face in contact", |r| r.contact_fraction),
+    real("stick_fraction", "1", "share of the contact that sticks", |r| r.stick_fraction),
+    real("max_penetration", "m", "largest penetration", |r| r.max_penetration),
+    count("newton_iterations", "Newton iterations of the step", |r| r.newton_iterations),
+    real("time", "s", "time", |r| r.time),
+];
+
+/// The columns of `/history/energy`, present when the energy balance is recorded.
+#[rustfmt::skip]
+pub(super) const ENERGY: &[Column] = &[
+    real("energy/external_work", "J/m", "work of the indenter since t = 0", |r| r.energy.external_work),
+    real("energy/stored", "J/m", "energy stored in the springs of the layer", |r| r.energy.stored),
+    real("energy/viscoelastic_dissipation", "J/m", "energy dissipated in the Prony arms since t = 0", |r| r.energy.viscoelastic_dissipation),
+    real("energy/friction_dissipation", "J/m", "energy dissipated by friction since t = 0", |r| r.energy.friction_dissipation),
+    real("energy/penalty", "J/m", "energy stored in the penalty", |r| r.energy.penalty),
+    real("energy/imbalance", "J/m", "work less stored and dissipated energy", |r| r.energy.imbalance),
+];
+
+/// All history columns of a run, `time` last.
+pub(super) fn history(energy: bool) -> impl Iterator<Item = &'static Column> {
+    ENERGY.iter().filter(move |_| energy).chain(HISTORY)
+}
+
+/// A field on the contact face, k x m.
+pub(super) struct Field {
+    pub name: &'static str,
+    pub units: &'static str,
+    pub long_name: &'static str,
+    pub values: fn(&InterfaceFrame) -> &[f64],
+}
+
+/// The fields of `/interface`; `time` follows them.
+#[rustfmt::skip]
+pub(super) const INTERFACE: &[Field] = &[
+    Field { name: "pressure", units: "Pa", long_name: "contact pressure, positive in compression", values: |f| &f.pressure },
+    Field { name: "shear", units: "Pa", long_name: "tangential traction on the layer, positive along +x", values: |f| &f.shear },
+    Field { name: "gap", units: "m", long_name: "normal gap, negative where the indenter penetrates", values: |f| &f.gap },
+    Field { name: "slip_rate", units: "m/s", long_name: "velocity of the indenter relative to the layer along x", values: |f| &f.slip_rate },
+    Field { name: "displacement_x", units: "m", long_name: "displacement of the contact face along x", values: |f| &f.displacement_x },
+    Field { name: "displacement_z", units: "m", long_name: "displacement of the contact face along z", values: |f| &f.displacement_z },
+];
+
+/// A nodal field of the bulk, j x nodes x components.
+pub(super) struct BulkField {
+    pub name: &'static str,
+    pub units: &'static str,
+    pub long_name: &'static str,
+    pub components: &'static [&'static str],
+}
+
+/// The nodal fields of `/bulk`; `time` follows them.
+#[rustfmt::skip]
+pub(super) const BULK: &[BulkField] = &[
+    BulkField { name: "displacement", units: "m", long_name: "displacement", components: &["x", "z"] },
+    BulkField { name: "stress", units: "Pa", long_name: "Cauchy stress at the nodes, tension positive", components: &["xx", "zz", "yy", "xz"] },
+];

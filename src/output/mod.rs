@@ -1,0 +1,109 @@
+//! Results: the HDF5 file of CONTRACT and the XDMF file beside it.
+//!
+//! # A file that is valid at every moment
+//!
+//! A run may be killed while it writes, and the file must still open. The HDF5 library gives no such promise: its
+//! flush is a series of writes, and between two of them the file can refer to what is not there yet. So the library
+//! only makes the file, under another name: every dataset at its planned number of rows, in one chunk, with its room
+//! set aside but not filled ([`skeleton`]). Then the number of rows is set to what is really there (one row of the
+//! history), and the file is renamed to its place.
+//!
+//! After that the library is not used any more. Adding rows is (1) writing numbers into room that no extent covers
+//! yet and (2) one write of the few kilobytes that hold all extents, which stand close together because metadata
+//! has a block of its own. The system takes pages whole, so that each extent is old or new, never a mixture, and the
+//! rows it uncovers are there. Between two pages of that write a kill can leave one dataset ahead of another by the
+//! rows of one flush; `time` is the last of its group, so that every row it counts is complete.
+//!
+//! The file is at all times one that the library itself could have written. No handle stays open and no lock is
+//! held, so it can be read while the run goes on.
+//!
+//! When more rows come than were planned, the file is copied, extended and renamed into place.
+
+pub mod bulk;
+pub mod clock;
+pub mod reader;
+
+mod columns;
+mod locate;
+mod recorder;
+mod skeleton;
+mod store;
+mod xdmf;
+
+use std::time::SystemTime;
+
+pub use columns::{Energy, HistoryRow, InterfaceFrame};
+pub use recorder::Recorder;
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// All phases were solved.
+    Complete,
+    /// A signal, a kill or an error ended the run early.
+    Stopped,
+    /// The solver gave up.
+    NotConverged,
+}
+
+impl Status {
+    /// Every status, in the order of the root attribute `status_values`.
+    pub const ALL: [Self; 3] = [Self::Complete, Self::Stopped, Self::NotConverged];
+
+    /// The text of the root attribute `status`.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Complete => "complete",
+            Self::Stopped => "stopped",
+            Self::NotConverged => "not converged",
+        }
+    }
+}
+
+/// What the root attributes say about a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Metadata {
+    /// The scene's title.
+    pub title: String,
+    /// The resolved scene, whole, as TOML.
+    pub scene: String,
+    /// Version of this program.
+    pub version: String,
+    /// The commit it was built from.
+    pub git_commit: String,
+    /// Version of PETSc.
+    pub petsc_version: String,
+    /// MPI ranks of the run.
+    pub ranks: usize,
+    /// When the run started; `wall_seconds` counts from here.
+    pub started: SystemTime,
+}
+
+/// What is going to be recorded. Numbers of rows are estimates: generous ones cost no disk space, short ones cost a
+/// copy of the file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Plan {
+    /// Rows of the history, row 0 included.
+    pub history_rows: usize,
+    /// Names of the phases.
+    pub phase_names: Vec<String>,
+    /// Whether `/history/energy` is recorded.
+    pub energy: bool,
+    /// Rows of the interface fields.
+    pub interface_rows: usize,
+    /// Undeformed coordinates of the nodes of the contact face, m; m of them.
+    pub interface_x: Vec<f64>,
+    /// Bulk fields; none = no group `/bulk` and no XDMF file.
+    pub bulk: Option<BulkPlan>,
+}
+
+/// The mesh and the number of the bulk fields to come.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct BulkPlan {
+    /// Frames.
+    pub frames: usize,
+    /// Undeformed coordinates x, z of all nodes, m.
+    pub coordinates: Vec<[f64; 2]>,
+    /// The four nodes of each cell, counter-clockwise, from 0.
+    pub cells: Vec<[i64; 4]>,
+}

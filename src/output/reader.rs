@@ -1,0 +1,120 @@
+//! Reads result files, those of a run that is still going on or was killed included.
+
+use std::path::{Path, PathBuf};
+
+use hdf5::types::VarLenUnicode;
+
+use crate::error::{Error, Result};
+
+/// A result file open for reading.
+#[derive(Debug)]
+pub struct Results {
+    path: PathBuf,
+    file: hdf5::File,
+}
+
+/// A field with `columns` values in each of `rows` rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Field {
+    /// Number of rows, such as stored times.
+    pub rows: usize,
+    /// Values per row; for bulk fields nodes times components, components fastest.
+    pub columns: usize,
+    /// Row after row.
+    pub values: Vec<f64>,
+}
+
+impl Field {
+    /// One row.
+    pub fn row(&self, row: usize) -> &[f64] {
+        self.values.get(row * self.columns..(row + 1) * self.columns).unwrap_or_default()
+    }
+}
+
+/// Whether this program wrote the file at `path`.
+pub fn is_ours(path: &Path) -> bool {
+    hdf5::File::open(path).and_then(|file| file.attr("mpjr_version")).is_ok()
+}
+
+impl Results {
+    /// Opens a file that this program wrote.
+    pub fn open(path: &Path) -> Result<Self> {
+        // The system's words on a file that is missing or may not be read are plainer than the library's.
+        std::fs::File::open(path).map_err(|error| Error::file(path, error))?;
+        let file = hdf5::File::open(path)
+            .map_err(|error| Error::file(path, format!("is not an HDF5 file that can be read ({error})")))?;
+        if file.attr("mpjr_version").is_err() {
+            return Err(Error::file(path, "is an HDF5 file, but not one that mpjr wrote"));
+        }
+        Ok(Self { path: path.to_owned(), file })
+    }
+
+    /// A string attribute of the root, such as `title`, `scene` or `status`.
+    pub fn text(&self, name: &str) -> Result<String> {
+        let value = self.file.attr(name).and_then(|attribute| attribute.read_scalar::<VarLenUnicode>());
+        value.map(|value| value.to_string()).map_err(|error| self.missing(&format!("attribute {name}"), &error))
+    }
+
+    /// A numeric attribute of the root, such as `wall_seconds` or `mpi_ranks`.
+    pub fn number(&self, name: &str) -> Result<f64> {
+        let value = self.file.attr(name).and_then(|attribute| attribute.read_scalar());
+        value.map_err(|error| self.missing(&format!("attribute {name}"), &error))
+    }
+
+    /// The names of the phases.
+    pub fn phase_names(&self) -> Result<Vec<String>> {
+        let names =
+            self.file.dataset("history/phase").and_then(|phase| phase.attr("names")?.read_raw::<VarLenUnicode>());
+        let names = names.map_err(|error| self.missing("attribute names of /history/phase", &error))?;
+        Ok(names.iter().map(ToString::to_string).collect())
+    }
+
+    /// Whether the file has the dataset, such as `history/energy/stored` or `bulk/stress`.
+    pub fn has(&self, dataset: &str) -> bool {
+        self.file.dataset(dataset).is_ok()
+    }
+
+    /// A column of the history as numbers: `time`, `normal_force`, `energy/stored`, ... As many as there are times.
+    pub fn history(&self, column: &str) -> Result<Vec<f64>> {
+        let rows = self.field("history/time")?.rows;
+        let mut values = self.field(&format!("history/{column}"))?.values;
+        values.truncate(rows);
+        Ok(values)
+    }
+
+    /// A field on the contact face: `pressure`, ... (k x m) or `time`, `x` (one column). As many rows as there are
+    /// times, except for `x`.
+    pub fn interface(&self, name: &str) -> Result<Field> {
+        self.table("interface", name)
+    }
+
+    /// A field of the bulk: `displacement`, `stress` (j x nodes x components), `time`, or the mesh: `coordinates`,
+    /// `cells`.
+    pub fn bulk(&self, name: &str) -> Result<Field> {
+        self.table("bulk", name)
+    }
+
+    fn table(&self, group: &str, name: &str) -> Result<Field> {
+        let mut field = self.field(&format!("{group}/{name}"))?;
+        if !["x", "coordinates", "cells"].contains(&name) {
+            let rows = self.field(&format!("{group}/time"))?.rows;
+            field.rows = field.rows.min(rows);
+            field.values.truncate(field.rows * field.columns);
+        }
+        Ok(field)
+    }
+
+    fn field(&self, dataset: &str) -> Result<Field> {
+        let read = || -> hdf5::Result<Field> {
+            let set = self.file.dataset(dataset)?;
+            let shape = set.shape();
+            let (rows, columns) = (shape.first().copied().unwrap_or(1), shape.iter().skip(1).product());
+            Ok(Field { rows, columns, values: set.read_raw()? })
+        };
+        read().map_err(|error| self.missing(&format!("dataset /{dataset}"), &error))
+    }
+
+    fn missing(&self, what: &str, error: &hdf5::Error) -> Error {
+        Error::file(&self.path, format!("has no {what} that can be read ({error})"))
+    }
+}

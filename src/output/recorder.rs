@@ -1,0 +1,283 @@
+//! Takes the rows of a run and sees to it that they are in the file within a second.
+
+use std::fs::OpenOptions;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant, SystemTime};
+
+use super::columns::{self, INTERFACE, Value};
+use super::store::{Store, Table};
+use super::xdmf::MeshSize;
+use super::{HistoryRow, InterfaceFrame, Metadata, Plan, Status, skeleton, xdmf};
+use crate::error::{Error, Result};
+
+/// Rows wait no longer than this before they are written.
+const FLUSH_EVERY: Duration = Duration::from_secs(1);
+
+/// The result file of a run, on the one rank that writes it.
+///
+/// Rows are handed over as they come; a thread writes what has gathered once a second, so that they reach the file
+/// even while a long step is being solved. What goes wrong there is told at the next call.
+#[derive(Debug)]
+pub struct Recorder {
+    shared: Arc<Shared>,
+    writer: Option<JoinHandle<()>>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    state: Mutex<State>,
+    woken: Condvar,
+}
+
+#[derive(Debug)]
+pub(super) struct State {
+    pub(super) store: Store,
+    plan: Plan,
+    pub(super) version: String,
+    pub(super) mesh: Option<MeshSize>,
+    pub(super) bulk_times: Vec<f64>,
+    begun: Instant,
+    history: Vec<HistoryRow>,
+    interface: Vec<InterfaceFrame>,
+    failure: Option<Error>,
+    closing: bool,
+}
+
+impl Recorder {
+    /// Creates the file `path` with `first`, the unloaded state, as row 0 of its history. An existing file is
+    /// replaced only if this program wrote it, and only once the new one is complete.
+    ///
+    /// # Errors
+    /// `Error::File` when the directory is missing or not writable, when the file is somebody else's, or when the
+    /// disk is full; nothing was changed then.
+    pub fn create(path: &Path, metadata: &Metadata, plan: Plan, first: &HistoryRow) -> Result<Self> {
+        let path = absolute(path)?;
+        refuse_foreign(&path)?;
+        xdmf::refuse_foreign(&path)?;
+        let scratch = scratch(&path);
+        let made = prepare(&scratch, &path, metadata, plan, first);
+        if made.is_err() {
+            // The error at hand says more than one about a leftover.
+            let _ = std::fs::remove_file(&scratch);
+        }
+        let shared = Arc::new(Shared { state: Mutex::new(made?), woken: Condvar::new() });
+        let theirs = Arc::clone(&shared);
+        let writer = std::thread::Builder::new().name("mpjr output".into()).spawn(move || theirs.write_while_open());
+        let writer = writer.map_err(|error| Error::Internal(format!("cannot start a thread: {error}")))?;
+        Ok(Self { shared, writer: Some(writer) })
+    }
+
+    /// Where the file is.
+    pub fn path(&self) -> PathBuf {
+        self.shared.lock().store.path().to_owned()
+    }
+
+    /// Adds a row to the history.
+    pub fn history(&self, row: HistoryRow) -> Result<()> {
+        let mut state = self.shared.lock();
+        state.check()?;
+        state.history.push(row);
+        Ok(())
+    }
+
+    /// Adds a row to the interface fields.
+    pub fn interface(&self, frame: InterfaceFrame) -> Result<()> {
+        let mut state = self.shared.lock();
+        state.check()?;
+        let nodes = state.plan.interface_x.len();
+        if let Some(field) = INTERFACE.iter().find(|field| (field.values)(&frame).len() != nodes) {
+            return Err(Error::Internal(format!("interface field {} without a value for each node", field.name)));
+        }
+        state.interface.push(frame);
+        Ok(())
+    }
+
+    /// Writes at once all rows handed over so far.
+    pub fn flush(&self) -> Result<()> {
+        let mut state = self.shared.lock();
+        state.check()?;
+        state.flush()
+    }
+
+    /// Writes what is left and how the run ended. Without this call the file says "stopped".
+    pub fn finish(self, status: Status) -> Result<()> {
+        let mut state = self.shared.lock();
+        state.check()?;
+        state.flush()?;
+        let file = state.store.open()?;
+        state.store.set_status(&file, status)?;
+        // Some file systems tell only now that the disk is full.
+        file.sync_all().map_err(|error| state.store.failed(error))
+    }
+
+    /// The state, for the bulk fields; no row is written while the guard lives.
+    pub(super) fn lock(&self) -> MutexGuard<'_, State> {
+        self.shared.lock()
+    }
+}
+
+impl Drop for Recorder {
+    fn drop(&mut self) {
+        self.shared.lock().closing = true;
+        self.shared.woken.notify_all();
+        if let Some(writer) = self.writer.take() {
+            // The thread catches its errors; had it panicked, there is nothing left to save.
+            let _ = writer.join();
+        }
+    }
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The writer thread: once a second, and once more at the end.
+    fn write_while_open(&self) {
+        let mut state = self.lock();
+        loop {
+            if !state.closing {
+                (state, _) = self.woken.wait_timeout(state, FLUSH_EVERY).unwrap_or_else(PoisonError::into_inner);
+            }
+            if state.failure.is_none() {
+                state.failure = state.flush().err();
+            }
+            if state.closing {
+                return;
+            }
+        }
+    }
+}
+
+impl State {
+    /// The error that the writer thread met, if it did.
+    pub(super) fn check(&self) -> Result<()> {
+        self.failure.clone().map_or(Ok(()), Err)
+    }
+
+    /// Writes all pending rows; on an error they stay pending and the file stays at its last good state.
+    pub(super) fn flush(&mut self) -> Result<()> {
+        if self.history.is_empty() && self.interface.is_empty() {
+            return Ok(());
+        }
+        self.make_room(Table::History, self.history.len())?;
+        self.make_room(Table::Interface, self.interface.len())?;
+        let file = self.store.open()?;
+        for (ahead, row) in self.history.iter().enumerate() {
+            let values: Vec<[u8; 8]> = columns::history(self.plan.energy)
+                .map(|column| match column.value {
+                    Value::Real(get) => get(row).to_ne_bytes(),
+                    Value::Count(get) => (get(row) as i64).to_ne_bytes(),
+                })
+                .collect();
+            let values: Vec<&[u8]> = values.iter().map(|value| value.as_slice()).collect();
+            self.store.write_row(&file, Table::History, ahead, &values)?;
+        }
+        for (ahead, frame) in self.interface.iter().enumerate() {
+            let mut values: Vec<Vec<u8>> = INTERFACE.iter().map(|field| bytes((field.values)(frame))).collect();
+            values.push(bytes(&[frame.time]));
+            let values: Vec<&[u8]> = values.iter().map(Vec::as_slice).collect();
+            self.store.write_row(&file, Table::Interface, ahead, &values)?;
+        }
+        self.store.set_wall_seconds(&file, self.begun.elapsed().as_secs_f64())?;
+        self.store.commit(&file, &[(Table::History, self.history.len()), (Table::Interface, self.interface.len())])?;
+        self.history.clear();
+        self.interface.clear();
+        Ok(())
+    }
+
+    /// Sees to it that `count` more rows fit into the table.
+    pub(super) fn make_room(&mut self, table: Table, count: usize) -> Result<()> {
+        while self.store.rows(table) + count > self.store.capacity(table) {
+            self.store = self.store.grown(table)?;
+        }
+        Ok(())
+    }
+}
+
+/// The numbers as the file has them.
+fn bytes(values: &[f64]) -> Vec<u8> {
+    values.iter().flat_map(|value| value.to_ne_bytes()).collect()
+}
+
+/// Makes the file complete with row 0 under the name `scratch`, then puts it at `path`.
+fn prepare(scratch: &Path, path: &Path, metadata: &Metadata, plan: Plan, first: &HistoryRow) -> Result<State> {
+    // The system's words on a directory that cannot be written are plainer than the library's.
+    let probe = OpenOptions::new().write(true).create(true).truncate(true).open(scratch);
+    probe.map_err(|error| Error::file(path, format!("cannot be created: {error}; name another file with --out")))?;
+    std::fs::remove_file(scratch).map_err(|error| Error::file(path, error))?;
+
+    skeleton::create(scratch, metadata, &plan).map_err(|error| about(path, error))?;
+    let mut store = Store::locate(scratch, &plan).map_err(|error| about(path, error))?;
+    let file = store.open()?;
+    store.show_committed_only(&file)?;
+    let waited = SystemTime::now().duration_since(metadata.started).unwrap_or_default();
+    let begun = Instant::now().checked_sub(waited).unwrap_or_else(Instant::now);
+    // Coordinates and cells are in the file and are not needed twice.
+    let mesh = plan.bulk.map(|bulk| MeshSize { nodes: bulk.coordinates.len(), cells: bulk.cells.len() });
+    let mut state = State {
+        store,
+        plan: Plan { bulk: None, ..plan },
+        version: metadata.version.clone(),
+        mesh,
+        bulk_times: Vec::new(),
+        begun,
+        history: vec![*first],
+        interface: Vec::new(),
+        failure: None,
+        closing: false,
+    };
+    state.flush().map_err(|error| about(path, error))?;
+    std::fs::rename(scratch, path).map_err(|error| Error::file(path, error))?;
+    state.store.moved_to(path);
+    xdmf::remove_stale(path)?;
+    Ok(state)
+}
+
+/// The same error told about the file that the user named.
+fn about(path: &Path, error: Error) -> Error {
+    match error {
+        Error::File { reason, .. } => Error::file(path, reason),
+        other => other,
+    }
+}
+
+/// The absolute form of a path whose directory exists.
+fn absolute(path: &Path) -> Result<PathBuf> {
+    let path = std::path::absolute(path).map_err(|error| Error::file(path, error))?;
+    let directory = path.parent().ok_or_else(|| Error::file(&path, "names no file"))?;
+    match std::fs::metadata(directory) {
+        Ok(about) if about.is_dir() => {}
+        Ok(_) => return Err(Error::file(&path, format!("{} is not a directory", directory.display()))),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            let reason =
+                format!("the directory {} does not exist; create it or name another with --out", directory.display());
+            return Err(Error::file(&path, reason));
+        }
+        Err(error) => return Err(Error::file(&path, error)),
+    }
+    Ok(path)
+}
+
+/// A name beside `path` that no other process uses.
+pub(super) fn scratch(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(format!(".mpjr-{}.part", std::process::id()));
+    path.with_file_name(name)
+}
+
+/// An existing file is replaced only if this program wrote it.
+fn refuse_foreign(path: &Path) -> Result<()> {
+    match std::fs::symlink_metadata(path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
+        Err(error) => return Err(Error::file(path, error)),
+        Ok(about) if about.is_dir() => return Err(Error::file(path, "is a directory; name a file with --out")),
+        Ok(_) => {}
+    }
+    if super::reader::is_ours(path) {
+        return Ok(());
+    }
+    Err(Error::file(path, "exists and was not written by mpjr; remove it or name another file with --out"))
+}

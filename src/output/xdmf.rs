@@ -1,0 +1,136 @@
+//! The XDMF file beside the results, by which ParaView and VTK read the bulk fields.
+
+use std::fmt::Write as _;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use super::columns::BULK;
+use crate::error::{Error, Result};
+
+/// The mark of a file that this program wrote.
+const MARK: &str = "<!-- Written by mpjr";
+
+/// Numbers of nodes and cells.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MeshSize {
+    pub nodes: usize,
+    pub cells: usize,
+}
+
+/// The XDMF file that belongs to a result file.
+pub(super) fn beside(results: &Path) -> PathBuf {
+    results.with_extension("xdmf")
+}
+
+/// An existing file is replaced only if this program wrote it.
+pub(super) fn refuse_foreign(results: &Path) -> Result<()> {
+    let path = beside(results);
+    if path == results {
+        return Err(Error::file(results, "is the name of the XDMF file; end the name of the results in .h5"));
+    }
+    match std::fs::read(&path) {
+        Ok(bytes) if String::from_utf8_lossy(&bytes).contains(MARK) => Ok(()),
+        Ok(_) => {
+            Err(Error::file(&path, "exists and was not written by mpjr; remove it or choose another name with --out"))
+        }
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(Error::file(&path, error)),
+    }
+}
+
+/// Removes what an earlier run left: it does not describe the new results.
+pub(super) fn remove_stale(results: &Path) -> Result<()> {
+    let path = beside(results);
+    match std::fs::remove_file(&path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(Error::file(&path, error)),
+        _ => Ok(()),
+    }
+}
+
+/// Writes the file anew with one grid for each of `times`, s; readers see the old one or the new one.
+pub(super) fn write(results: &Path, version: &str, mesh: MeshSize, times: &[f64]) -> Result<()> {
+    let path = beside(results);
+    let scratch = super::recorder::scratch(&path);
+    let name = results.file_name().unwrap_or_default().to_string_lossy();
+    let outcome = std::fs::write(&scratch, text(&escape(&name), version, mesh, times))
+        .and_then(|()| std::fs::rename(&scratch, &path));
+    outcome.map_err(|error| Error::file(&path, error))
+}
+
+/// The document. x and z of the layer are ParaView's X and Y; the displacement gets a zero third component, the
+/// components of the stress are scalars.
+fn text(name: &str, version: &str, mesh: MeshSize, times: &[f64]) -> String {
+    let MeshSize { nodes, cells } = mesh;
+    let frames = times.len();
+    let mut out = format!(
+        r#"<?xml version="1.0" ?>
+<!DOCTYPE Xdmf SYSTEM "Xdmf.dtd" []>
+{MARK} {version}; the fields are in the HDF5 file of the same name. -->
+<Xdmf Version="2.0">
+  <Domain>
+    <Grid Name="bulk" GridType="Collection" CollectionType="Temporal">
+"#
+    );
+    for (frame, time) in times.iter().enumerate() {
+        // Writing to a string cannot fail.
+        let _ = write!(
+            out,
+            r#"      <Grid Name="frame {frame}" GridType="Uniform">
+        <Time Value="{time:?}"/>
+        <Topology TopologyType="Quadrilateral" NumberOfElements="{cells}">
+          <DataItem Format="HDF" NumberType="Int" Precision="8" Dimensions="{cells} 4">{name}:/bulk/cells</DataItem>
+        </Topology>
+        <Geometry GeometryType="XY">
+          <DataItem Format="HDF" NumberType="Float" Precision="8" Dimensions="{nodes} 2">{name}:/bulk/coordinates</DataItem>
+        </Geometry>
+"#
+        );
+        for field in BULK {
+            let width = field.components.len();
+            let slab = |component: usize| {
+                format!(
+                    r#"<DataItem ItemType="HyperSlab" NumberType="Float" Precision="8" Dimensions="{nodes} 1">
+              <DataItem Dimensions="3 3" Format="XML">{frame} 0 {component} 1 1 1 1 {nodes} 1</DataItem>
+              <DataItem Format="HDF" NumberType="Float" Precision="8" Dimensions="{frames} {nodes} {width}">{name}:/bulk/{}</DataItem>
+            </DataItem>"#,
+                    field.name
+                )
+            };
+            let _ = if width == 2 {
+                write!(
+                    out,
+                    r#"        <Attribute Name="{}" AttributeType="Vector" Center="Node">
+          <DataItem ItemType="Function" Function="JOIN($0, $1, 0 * $1)" Dimensions="{nodes} 3">
+            {}
+            {}
+          </DataItem>
+        </Attribute>
+"#,
+                    field.name,
+                    slab(0),
+                    slab(1)
+                )
+            } else {
+                field.components.iter().enumerate().try_for_each(|(component, label)| {
+                    write!(
+                        out,
+                        r#"        <Attribute Name="{}_{label}" AttributeType="Scalar" Center="Node">
+            {}
+        </Attribute>
+"#,
+                        field.name,
+                        slab(component)
+                    )
+                })
+            };
+        }
+        out.push_str("      </Grid>\n");
+    }
+    out.push_str("    </Grid>\n  </Domain>\n</Xdmf>\n");
+    out
+}
+
+/// A file name as XML text.
+fn escape(name: &str) -> String {
+    name.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}

@@ -1,0 +1,108 @@
+//! A small run's worth of results, every number of which follows from its row.
+
+use std::time::SystemTime;
+
+use mpjr::output::{BulkPlan, Energy, HistoryRow, InterfaceFrame, Metadata, Plan};
+
+/// Nodes of the contact face.
+pub const FACE: usize = 5;
+
+pub fn metadata() -> Metadata {
+    Metadata {
+        title: "Größe m²".into(),
+        // Longer than the 64 KiB that an attribute holds in place.
+        scene: "title = \"x\" # ".to_owned() + &"é".repeat(100_000),
+        version: "0.1.0".into(),
+        git_commit: "abcdef".into(),
+        petsc_version: "3.18.5".into(),
+        ranks: 3,
+        started: SystemTime::now(),
+    }
+}
+
+pub fn plan(rows: usize, bulk_frames: usize) -> Plan {
+    Plan {
+        history_rows: rows,
+        phase_names: vec!["indent".into(), "slide".into()],
+        energy: true,
+        interface_rows: rows,
+        interface_x: (0..FACE).map(|i| i as f64 / 4.0).collect(),
+        bulk: (bulk_frames > 0).then(|| mesh(6, 4, bulk_frames)),
+    }
+}
+
+/// A rectangle of `nx` x `nz` cells of the unit square.
+pub fn mesh(nx: usize, nz: usize, frames: usize) -> BulkPlan {
+    let node = |i: usize, k: usize| (k * (nx + 1) + i) as i64;
+    BulkPlan {
+        frames,
+        coordinates: (0..=nz)
+            .flat_map(|k| (0..=nx).map(move |i| [i as f64 / nx as f64, k as f64 / nz as f64 - 1.0]))
+            .collect(),
+        cells: (0..nz)
+            .flat_map(|k| (0..nx).map(move |i| [node(i, k), node(i + 1, k), node(i + 1, k + 1), node(i, k + 1)]))
+            .collect(),
+    }
+}
+
+/// Row `i` of the history; row 0 is the unloaded state.
+pub fn row(i: usize) -> HistoryRow {
+    let v = i as f64;
+    HistoryRow {
+        time: v,
+        phase: i % 2,
+        approach: 2.0 * v,
+        sliding: 3.0 * v,
+        normal_force: 4.0 * v,
+        tangential_force: 5.0 * v,
+        hysteretic_force: 6.0 * v,
+        contact_fraction: 7.0 * v,
+        stick_fraction: 8.0 * v,
+        max_penetration: 9.0 * v,
+        newton_iterations: 10 * i,
+        energy: Energy {
+            external_work: 11.0 * v,
+            stored: 12.0 * v,
+            viscoelastic_dissipation: 13.0 * v,
+            friction_dissipation: 14.0 * v,
+            penalty: 15.0 * v,
+            imbalance: 16.0 * v,
+        },
+    }
+}
+
+/// The real columns of [`row`] other than time, with their factors.
+pub const COLUMNS: [(&str, f64); 15] = [
+    ("approach", 2.0),
+    ("sliding", 3.0),
+    ("normal_force", 4.0),
+    ("tangential_force", 5.0),
+    ("hysteretic_force", 6.0),
+    ("contact_fraction", 7.0),
+    ("stick_fraction", 8.0),
+    ("max_penetration", 9.0),
+    ("newton_iterations", 10.0),
+    ("energy/external_work", 11.0),
+    ("energy/stored", 12.0),
+    ("energy/viscoelastic_dissipation", 13.0),
+    ("energy/friction_dissipation", 14.0),
+    ("energy/penalty", 15.0),
+    ("energy/imbalance", 16.0),
+];
+
+/// Row `i` of the interface fields at face nodes 0, 1, ...: field number f (1 to 6) is 1000 f i + node.
+pub fn frame(i: usize, face: usize) -> InterfaceFrame {
+    let field = |f: usize| (0..face).map(|node| (1000 * f * i + node) as f64).collect();
+    InterfaceFrame {
+        time: i as f64,
+        pressure: field(1),
+        shear: field(2),
+        gap: field(3),
+        slip_rate: field(4),
+        displacement_x: field(5),
+        displacement_z: field(6),
+    }
+}
+
+/// The fields of [`frame`], in the order of their number f.
+pub const FIELDS: [&str; 6] = ["pressure", "shear", "gap", "slip_rate", "displacement_x", "displacement_z"];

@@ -1,0 +1,64 @@
+"""Checks result files against CONTRACT.md with h5py alone: python3 tests/h5py_contract.py FILE.h5 ..."""
+
+import sys
+
+import h5py
+import numpy as np
+
+ROOT = {
+    "title": str, "scene": str, "mpjr_version": str, "git_commit": str, "petsc_version": str, "started": str,
+    "units": str, "status": str, "mpi_ranks": np.integer, "wall_seconds": np.floating,
+}
+HISTORY = """time phase approach sliding normal_force tangential_force hysteretic_force contact_fraction stick_fraction
+             max_penetration newton_iterations""".split()
+ENERGY = "external_work stored viscoelastic_dissipation friction_dissipation penalty imbalance".split()
+INTERFACE = "pressure shear gap slip_rate displacement_x displacement_z".split()
+
+
+def check(path):
+    with h5py.File(path, "r") as file:
+        for name, kind in ROOT.items():
+            assert isinstance(file.attrs[name], kind), f"{name}: {type(file.attrs[name])}"
+        assert file.attrs["units"] == "SI"
+        assert file.attrs["status"] in ("complete", "stopped", "not converged")
+
+        def described(name, item):
+            if isinstance(item, h5py.Dataset):
+                assert isinstance(item.attrs["units"], str), name
+                assert isinstance(item.attrs["long_name"], str) and item.attrs["long_name"], name
+
+        file.visititems(described)
+
+        history = file["history"]
+        rows = len(history["time"])
+        columns = [history[name] for name in HISTORY]
+        if "energy" in history:
+            columns += [history["energy"][name] for name in ENERGY]
+        assert rows >= 1 and history["time"][0] == 0.0 and np.all(np.diff(history["time"][:]) > 0)
+        for column in columns:
+            assert column.shape == (rows,) and np.all(np.isfinite(column[:])), column.name
+        for name in ("phase", "newton_iterations"):
+            assert np.issubdtype(history[name].dtype, np.integer)
+        names = history["phase"].attrs["names"]
+        assert all(isinstance(name, str) for name in names) and history["phase"][:].max() < len(names)
+
+        interface = file["interface"]
+        frames, nodes = len(interface["time"]), len(interface["x"])
+        for name in INTERFACE:
+            assert interface[name].shape == (frames, nodes) and interface[name].dtype == np.float64, name
+            assert np.all(np.isfinite(interface[name][:])), name
+
+        if "bulk" in file:
+            bulk = file["bulk"]
+            count, nodes = len(bulk["time"]), len(bulk["coordinates"])
+            assert bulk["coordinates"].shape == (nodes, 2) and bulk["cells"].shape[1] == 4
+            assert bulk["cells"][:].min() >= 0 and bulk["cells"][:].max() < nodes
+            assert bulk["displacement"].shape == (count, nodes, 2)
+            assert bulk["stress"].shape == (count, nodes, 4)
+            assert list(bulk["stress"].attrs["components"]) == ["xx", "zz", "yy", "xz"]
+            assert np.all(np.isfinite(bulk["stress"][:])) and np.all(np.isfinite(bulk["displacement"][:]))
+        print(f"{path}: {rows} rows, {frames} interface profiles, status {file.attrs['status']}")
+
+
+for path in sys.argv[1:]:
+    check(path)
