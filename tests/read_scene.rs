@@ -296,3 +296,27 @@ fn resolved_scenes_read_back_equal() {
         assert_round_trip(&random.scene());
     }
 }
+
+/// What a slip of the hand or a broken disk leaves is an error or a scene, on one line, never a panic.
+#[test]
+fn damaged_files_are_errors_of_one_line() {
+    let mut random = Random(8);
+    let damage =
+        ["", "[", "]", "{", "=", "\"", ".", ",", "-", "e", "0", "\n", "\r", "\0", "é", "#", "nan", "9999999999"];
+    for _ in 0..5000 {
+        let mut letters: Vec<String> = SMALLEST.chars().map(String::from).collect();
+        for _ in 0..1 + random.below(3) {
+            let at = random.below(letters.len() as u64) as usize;
+            letters[at] = random.of(&damage).to_owned();
+        }
+        if let Err(error) = read_with(&letters.concat(), &[]) {
+            let message = error.to_string();
+            assert!(!message.chars().any(char::is_control), "{message:?}");
+            assert_eq!(error.exit_code(), 2);
+        }
+    }
+    for nested in ["[".repeat(100_000), format!("a = {}", "[".repeat(100_000)), "a.".repeat(100_000) + "a = 1"] {
+        assert!(read_with(&nested, &[]).is_err());
+        assert!(read_with(SMALLEST, &[&nested]).is_err());
+    }
+}

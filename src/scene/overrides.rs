@@ -21,8 +21,10 @@ pub(super) fn apply(table: &mut Table, overrides: &[String], file: &Path) -> Res
 /// its index from 0 or, where it has one, by its name (`phase.slide.velocity`); a key with a dot in it is quoted
 /// (`phase."1.5 s".steps`). Tables on the way are made. Whether the keys exist is for the reader of the table to say.
 pub fn set(table: &mut Table, path: &str, value: Value, file: &Path) -> Result<()> {
+    // Deeper than any key of a scene, and no strain on the stack.
+    const DEEPEST: usize = 16;
     let keys = split_path(path);
-    if keys.iter().any(String::is_empty) {
+    if keys.len() > DEEPEST || keys.iter().any(String::is_empty) {
         return Err(Error::scene(file, path, "must be keys joined by dots, such as layer.width"));
     }
     put_in_table(table, &keys, 0, value).map_err(|(depth, reason)| Error::scene(file, keys[..depth].join("."), reason))
