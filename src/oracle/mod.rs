@@ -10,8 +10,11 @@
 //! stands at h(x - s), and the hysteretic force is the integral of p dh/dx.
 
 pub mod layer;
+pub mod line_contact;
 pub mod periodic;
+pub mod prony;
 pub mod solid;
+pub mod steady;
 pub mod transient;
 
 pub use layer::{Compliance, Layer};
