@@ -9,6 +9,7 @@ pub mod friction;
 pub mod interface;
 pub mod loading;
 pub mod mesh;
+pub mod oracle;
 pub mod output;
 pub mod parallel;
 pub mod petsc;

@@ -2,6 +2,7 @@
 #![allow(dead_code)]
 
 pub mod mpi;
+pub mod sample;
 
 use std::path::{Path, PathBuf};
 
