@@ -6,6 +6,7 @@
 
 pub mod collective_write;
 mod error;
+mod factor;
 mod ffi;
 mod matrix;
 pub mod object_address;
@@ -14,8 +15,9 @@ mod session;
 mod transient;
 mod vector;
 
+pub use factor::{Cholesky, DenseLu};
 pub use matrix::{Matrix, Pattern};
 pub use partition::partition;
 pub use session::{Session, blas_library, peak_memory};
-pub use transient::{Accepted, Implicit, Integrator, Next, Settings, Step, Verdict};
+pub use transient::{Accepted, Implicit, Integrator, Linear, Next, Settings, Step, Verdict};
 pub use vector::{Gather, Vector};
