@@ -108,3 +108,10 @@ pub struct BulkPlan {
     /// The four nodes of each cell, counter-clockwise, from 0.
     pub cells: Vec<[i64; 4]>,
 }
+
+/// The HDF5 library's error in one line, without its stack: the system's words where it quotes them.
+fn plain(error: &hdf5::Error) -> String {
+    let text = error.to_string();
+    let quoted = text.split("error message = '").nth(1).and_then(|rest| rest.split('\'').next());
+    quoted.or_else(|| text.lines().next()).unwrap_or_default().to_owned()
+}
