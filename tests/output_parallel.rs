@@ -1,4 +1,5 @@
 //! Bulk fields, written by 1 to 4 ranks into the same file.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;
 
