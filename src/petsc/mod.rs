@@ -1,10 +1,9 @@
-//! Thin safe wrappers of PETSc, and of two calls of HDF5: the only `unsafe` of the crate.
+//! Thin safe wrappers of PETSc, and of one call of HDF5: the only `unsafe` of the crate.
 //!
 //! A handle owns its object and destroys it when dropped; every code is checked; what PETSc says of a failure becomes
 //! the text of an [`Error`](crate::error::Error). Everything here is collective over the communicator of its objects
 //! unless it says otherwise.
 
-pub mod collective_write;
 mod error;
 mod factor;
 mod ffi;
