@@ -1,0 +1,3 @@
+//! The commands of `mpjr`, one module each.
+
+pub mod fit;
