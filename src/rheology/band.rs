@@ -41,6 +41,16 @@ impl Band {
             .collect()
     }
 
+    /// `count` >= 2 values, both ends among them, whose logarithms crowd towards the ends as the extrema of a Chebyshev
+    /// polynomial do.
+    pub fn chebyshev(self, count: usize) -> Vec<f64> {
+        let middle = 0.5 * (self.from.ln() + self.to.ln());
+        let half = 0.5 * (self.to.ln() - self.from.ln());
+        let angle = |i: usize| std::f64::consts::PI * i as f64 / (count - 1) as f64;
+        let inside = (1..count - 1).map(|i| (middle - half * angle(i).cos()).exp());
+        std::iter::once(self.from).chain(inside).chain([self.to]).collect()
+    }
+
     /// `count` values in geometric progression strictly inside: the ends are left out.
     pub fn interior(self, count: usize) -> Vec<f64> {
         self.samples(count + 2)[1..=count].to_vec()

@@ -33,7 +33,7 @@ pub fn parse(text: &str, residuals: Residuals) -> Result<Table, LineError> {
         }
         let line = index + 1;
         let fields = fields(content);
-        let header = std::mem::take(&mut first) && fields.iter().all(|field| field.parse::<f64>().is_err());
+        let header = std::mem::take(&mut first) && is_header(&fields);
         if header {
             continue;
         }
@@ -52,6 +52,12 @@ pub fn parse(text: &str, residuals: Residuals) -> Result<Table, LineError> {
         _ => Samples::dynamic(column(0), column(1), column(2)),
     };
     Ok(Table { samples, lines: rows.iter().map(|row| row.0).collect() })
+}
+
+/// Words and not one number. A field without a letter is a number gone wrong, such as one with a decimal comma.
+fn is_header(fields: &[&str]) -> bool {
+    fields.iter().all(|field| field.parse::<f64>().is_err())
+        && fields.iter().any(|field| field.contains(char::is_alphabetic))
 }
 
 /// The columns of a line; one kind of separator per line.
