@@ -2,5 +2,6 @@
 
 pub mod cli;
 pub mod error;
+pub mod plot;
 pub mod rheology;
 pub mod scene;

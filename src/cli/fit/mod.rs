@@ -1,5 +1,6 @@
 //! `mpjr fit`: from measured moduli, or from the power law of Eq. (11), to a material.
 
+mod figures;
 mod material;
 mod report;
 
@@ -26,6 +27,9 @@ pub struct FitArgs {
     /// Write the material to this file, for a scene to take by `material = { file = "..." }`
     #[arg(long, value_name = "FILE.toml")]
     pub out: Option<PathBuf>,
+    /// Draw the series beside the data and the shorter series into this directory, as PNG and SVG
+    #[arg(long, value_name = "DIR")]
+    pub plot: Option<PathBuf>,
     /// The modulus that the columns give; Young's is divided by 2 (1 + NU)
     #[arg(long, value_enum, default_value_t = Modulus::Shear, conflicts_with = "fractional")]
     pub modulus: Modulus,
@@ -165,6 +169,11 @@ pub fn run(args: &FitArgs) -> Result<()> {
             text += &format!("\nmaterial written to {}\n", out.display());
         }
         None => text += "\nno file written; --out material.toml writes one for a scene\n",
+    }
+    if let Some(directory) = &args.plot {
+        for file in figures::draw(directory, &source, &fit, residuals)? {
+            text += &format!("figure written to {}\n", file.display());
+        }
     }
     print!("{text}");
     Ok(())

@@ -35,7 +35,11 @@ pub(super) fn ladder(ladder: &Ladder) -> String {
             rung.fit.max_deviation(),
             rung.fit.uncertainty.condition,
             rung.bic,
-            if i == ladder.chosen { "   <- chosen" } else { "" }
+            match rung.fit.dropped {
+                _ if i == ladder.chosen => "   <- chosen",
+                0 => "",
+                _ => "   (the last arm carries nothing)",
+            }
         );
     }
     text + match ladder.end {

@@ -22,12 +22,14 @@ pub(super) fn moduli(samples: &Samples, residuals: Residuals, times: &[f64]) -> 
 }
 
 /// The same least-squares problem with as few rows as columns: R x = Q' b. Long data files stay cheap.
-fn compressed(matrix: DMatrix<f64>, right: DVector<f64>) -> (DMatrix<f64>, DVector<f64>) {
+fn compressed(matrix: DMatrix<f64>, mut right: DVector<f64>) -> (DMatrix<f64>, DVector<f64>) {
     if matrix.nrows() <= matrix.ncols() {
         return (matrix, right);
     }
+    let columns = matrix.ncols();
     let qr = matrix.qr();
-    (qr.r(), qr.q().transpose() * right)
+    qr.q_tr_mul(&mut right);
+    (qr.r(), right.rows(0, columns).into_owned())
 }
 
 /// min |A x - b| with x >= 0.

@@ -83,10 +83,16 @@ pub struct Trust {
     pub left_above: bool,
 }
 
-/// The longest run of abscissae at which every deviation is within `limit`; none if there are no two in a row.
+/// The longest run of abscissae at which every deviation is within `limit`; none if there are no two in a row. Between
+/// the ends it is the median of three neighbours that counts: one outlier is noise, not the series leaving the data.
 pub fn trust(samples: &Samples, fit: &Fit, limit: f64) -> Option<Trust> {
     let points = samples.at.len();
-    let good = |i: usize| fit.deviation.iter().skip(i).step_by(points).all(|d| d.abs() <= limit || d.is_nan());
+    let smooth = |part: &[f64], i: usize| match (i.checked_sub(1), part.get(i + 1)) {
+        (Some(before), Some(after)) => median(part[before], part[i], *after),
+        _ => part[i],
+    };
+    let good =
+        |i: usize| fit.deviation.chunks(points).map(|part| smooth(part, i)).all(|d| d.abs() <= limit || d.is_nan());
     let length = |i: usize, j: usize| (samples.at[j] / samples.at[i].max(f64::MIN_POSITIVE)).ln();
     let mut best: Option<(usize, usize)> = None;
     let mut start = None;
@@ -101,6 +107,10 @@ pub fn trust(samples: &Samples, fit: &Fit, limit: f64) -> Option<Trust> {
         }
     }
     best.map(|(i, j)| Trust { from: samples.at[i], to: samples.at[j], left_below: i > 0, left_above: j + 1 < points })
+}
+
+fn median(a: f64, b: f64, c: f64) -> f64 {
+    a.min(b).max(a.max(b).min(c))
 }
 
 /// The longest part of `within` in which `deviation` stays within `limit`, its ends to 1e-6 of themselves.
