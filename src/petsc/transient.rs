@@ -41,6 +41,8 @@ pub enum Next {
         now: f64,
         /// s
         dt: f64,
+        /// How often it may be cut by four before the solve fails.
+        cuts: usize,
     },
     /// The end.
     Stop,
@@ -101,7 +103,7 @@ pub struct Settings {
     pub linear: Linear,
     /// Newton iterations per attempt before the step is cut.
     pub max_newton: usize,
-    /// How often a step may be cut (by four each time) before the solve fails.
+    /// How often the first step may be cut by four before the solve fails.
     pub max_cuts: usize,
 }
 
@@ -362,8 +364,9 @@ unsafe extern "C" fn post_step<P: Implicit>(ts: ffi::TS) -> ffi::PetscErrorCode 
             check(ffi::TSGetSolution(ts, &mut u))?;
             let accepted = Accepted { step: context.step, newton: std::mem::take(&mut context.newton) };
             match context.problem.accepted(accepted, &Vector::borrow(u))? {
-                Next::Step { now, dt } => {
+                Next::Step { now, dt, cuts } => {
                     check(ffi::TSSetTime(ts, now))?;
+                    check(ffi::TSSetMaxStepRejections(ts, cuts as i32))?;
                     check(ffi::TSSetTimeStep(ts, dt))
                 }
                 Next::Stop => check(ffi::TSSetConvergedReason(ts, ffi::TSConvergedReason_TS_CONVERGED_USER)),

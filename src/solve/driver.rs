@@ -14,13 +14,13 @@ use crate::petsc::{Accepted, Implicit, Integrator, Matrix, Next, Settings, Step,
 pub struct Limits {
     /// Newton iterations per attempt.
     pub max_newton: usize,
-    /// How often a step may be cut by four.
+    /// How often a planned step may be cut by four: its pieces are no shorter than 4^-max_cuts of it.
     pub max_cuts: usize,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { max_newton: 30, max_cuts: 8 }
+        Self { max_newton: 30, max_cuts: 5 }
     }
 }
 
@@ -33,6 +33,7 @@ pub struct Driver<'a> {
     target: usize,
     /// The end of the last accepted step, s.
     now: f64,
+    max_cuts: usize,
     counts: Counts,
 }
 
@@ -56,7 +57,7 @@ pub struct Counts {
 impl<'a> Driver<'a> {
     /// A driver at the beginning of the history.
     pub fn new(problem: &'a mut dyn TransientProblem, observer: &'a mut dyn Observer, phases: &'a [Phase]) -> Self {
-        Self { problem, observer, phases, phase: 0, target: 0, now: 0.0, counts: Counts::default() }
+        Self { problem, observer, phases, phase: 0, target: 0, now: 0.0, max_cuts: 0, counts: Counts::default() }
     }
 
     /// Runs the whole history from rest; `u` ends as the last accepted state.
@@ -71,6 +72,7 @@ impl<'a> Driver<'a> {
         u: &mut Vector,
     ) -> Result<()> {
         let Some(first) = self.phases.first() else { return Ok(()) };
+        self.max_cuts = settings.max_cuts;
         let start = Step { t: first.steps[0].time, dt: first.steps[0].dt };
         self.problem.begin(first.clone());
         let begun = Instant::now();
@@ -93,7 +95,9 @@ impl<'a> Driver<'a> {
         let remaining = target.time - self.now;
         if remaining > 1e-9 * target.dt {
             // Inside a planned step that was cut: grow back by two.
-            return Next::Step { now: self.now, dt: remaining.min(2.0 * dt) };
+            let dt = remaining.min(2.0 * dt);
+            let cuts = self.max_cuts as f64 - (target.dt / dt).log(4.0);
+            return Next::Step { now: self.now, dt, cuts: (cuts + 1e-6).max(0.0) as usize };
         }
         self.now = target.time;
         self.target += 1;
@@ -105,7 +109,7 @@ impl<'a> Driver<'a> {
                 None => return Next::Stop,
             }
         }
-        Next::Step { now: self.now, dt: self.phases[self.phase].steps[self.target].dt }
+        Next::Step { now: self.now, dt: self.phases[self.phase].steps[self.target].dt, cuts: self.max_cuts }
     }
 }
 
