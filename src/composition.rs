@@ -1,5 +1,9 @@
 //! The composition root: the one place that matches on what a scene asks for and builds the parts for it.
 
+mod profile;
+
+use std::path::Path;
+
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
@@ -10,11 +14,13 @@ use crate::friction::Friction;
 use crate::interface::{Interface, Laws};
 use crate::loading::{self, Motion, Phase};
 use crate::mesh::{Layer, Mesh, Sides};
+use crate::parallel::share_numbers;
 use crate::petsc::{Matrix, Settings, Vector};
-use crate::profile::{Circle, Harmonic, Parabola, Profile, Repeated, Wedge};
 use crate::rheology::{Arm, Memory, Prony};
 use crate::scene::{self, Scene, When};
 use crate::solve::{Body, Limits, Moduli, Monolithic, TransientProblem};
+
+pub use profile::{Finest, Shape, elevations, shape};
 
 /// A scene made ready to run.
 pub struct Problem {
@@ -32,8 +38,12 @@ pub struct Problem {
     pub mesh: Mesh,
 }
 
-/// Builds what `scene` asks for, distributed over `comm`.
-pub fn build(comm: &SimpleCommunicator, scene: &Scene) -> Result<Problem> {
+/// Builds what `scene`, which was read from `file`, asks for, distributed over `comm`. What it needs of other files is
+/// read by one rank.
+pub fn build(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Problem> {
+    // First what the scene may be refused for.
+    let elevations = share_numbers(comm, || elevations(scene, file))?;
+    let shape = shape(scene, file, &elevations)?;
     let mesh = layer(&scene.layer).mesh();
     let face = mesh.face.clone();
     let moduli = moduli(&scene.material);
@@ -41,7 +51,7 @@ pub fn build(comm: &SimpleCommunicator, scene: &Scene) -> Result<Problem> {
     let u = body.vector()?;
     let bulk = bulk(scene, &body, moduli, &u)?;
     let laws = Laws {
-        profile: profile(scene),
+        profile: shape.profile,
         penalty: scene.contact.penalty,
         friction: scene.friction.as_ref().map(friction),
     };
@@ -96,23 +106,6 @@ fn bulk(scene: &Scene, body: &Body, moduli: Moduli, layout: &Vector) -> Result<B
         scene::Memory::BackwardEuler => Memory::BackwardEuler,
     };
     Bulk::new(parts, times, memory, layout)
-}
-
-/// Under periodic sides every profile repeats with the layer's period.
-fn profile(scene: &Scene) -> Box<dyn Profile> {
-    let period = (scene.layer.sides == scene::Sides::Periodic).then_some(scene.layer.width);
-    fn repeat<P: Profile + 'static>(profile: P, centre: f64, period: Option<f64>) -> Box<dyn Profile> {
-        match period {
-            Some(period) => Box::new(Repeated { profile, centre, period }),
-            None => Box::new(profile),
-        }
-    }
-    match scene.indenter {
-        scene::Indenter::Harmonic { amplitude, wavelength } => Box::new(Harmonic { amplitude, wavelength }),
-        scene::Indenter::Parabola { radius, centre } => repeat(Parabola { radius, centre }, centre, period),
-        scene::Indenter::Circle { radius, centre } => repeat(Circle { radius, centre }, centre, period),
-        scene::Indenter::Wedge { slope, centre } => repeat(Wedge { slope, centre }, centre, period),
-    }
 }
 
 fn friction(friction: &scene::Friction) -> Friction {

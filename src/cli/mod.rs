@@ -1,6 +1,7 @@
 //! The commands of `mpjr`, one module each.
 
 mod check;
+mod profile;
 mod progress;
 mod record;
 mod run;

@@ -109,5 +109,5 @@ fn no_text_panics() {
             read += 1;
         }
     }
-    assert!(read > 1000);
+    assert!(read > 100);
 }

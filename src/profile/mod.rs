@@ -10,7 +10,7 @@ mod survey;
 use crate::error::Result;
 
 pub use expression::Formula;
-pub use rough::{MOST_WAVES, Rms, Rough, Roughness};
+pub use rough::{Rms, Rough, Roughness};
 pub use sampled::{Point, Sampled};
 pub use smooth::{Circle, Harmonic, Parabola, Wedge};
 pub use survey::Survey;
@@ -23,6 +23,12 @@ pub trait Profile {
     /// # Errors
     /// [`Error::Domain`](crate::error::Error::Domain) where the profile is not known.
     fn at(&self, x: f64) -> Result<Elevation>;
+}
+
+impl Profile for Box<dyn Profile> {
+    fn at(&self, x: f64) -> Result<Elevation> {
+        (**self).at(x)
+    }
 }
 
 /// A point of a profile.

@@ -60,9 +60,6 @@ type Complex = [f64; 2];
 /// Points to the shortest wavelength among which the lowest is looked for.
 pub const GRID: usize = 8;
 
-/// A profile has at most so many waves: beyond them, evaluating it would take longer than the contact.
-pub const MOST_WAVES: usize = 10_000;
-
 impl Roughness {
     /// The wave numbers n of the period: those whose wavelength is between shortest and longest, to round-off.
     pub fn waves(&self) -> std::ops::RangeInclusive<usize> {

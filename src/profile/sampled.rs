@@ -35,8 +35,8 @@ impl Sampled {
     pub fn new(mut points: Vec<Point>, period: Option<f64>) -> Self {
         let first = points.first().map_or(0.0, |point| point.x);
         let last = points.last().map_or(0.0, |point| point.x);
-        // A few units in the last place of the largest number that takes part.
-        let near = 4.0 * f64::EPSILON * first.abs().max(last.abs()).max(period.unwrap_or(0.0));
+        // Some units in the last place of the largest number that takes part.
+        let near = 16.0 * f64::EPSILON * first.abs().max(last.abs()).max(period.unwrap_or(0.0));
         if let Some(period) = period
             && last - first > period - near
         {
