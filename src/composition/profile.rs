@@ -200,7 +200,9 @@ fn waves(roughness: &Roughness) -> std::result::Result<usize, (&'static str, Str
     let numbers = roughness.waves();
     let Roughness { shortest, longest, period, .. } = *roughness;
     if numbers.is_empty() {
-        let reason = format!("has no whole fraction between {shortest:?} and {longest:?} m, got {period:?}");
+        let reason = format!(
+            "must have a wave of a whole fraction of it between shortest ({shortest:?} m) and longest ({longest:?} m), got {period:?}"
+        );
         return Err(("period", reason));
     }
     if *numbers.end() > MOST {

@@ -18,7 +18,9 @@ impl Profile for Formula {
         let Dual { value, slope } = self.expression.at(&[Dual::variable(x)]);
         match value.is_finite() && slope.is_finite() {
             true => Ok(Elevation { height: value, slope }),
-            false => Err(Error::Domain(format!("is {value} with slope {slope} at x = {x:?} m, which must be finite"))),
+            false => {
+                Err(Error::Domain(format!("is {value}, with slope {slope}, at x = {x:?} m, where both must be finite")))
+            }
         }
     }
 }

@@ -68,5 +68,3 @@ pub fn scenes(path: &str) -> Vec<PathBuf> {
 pub fn bad_scenes() -> Vec<BadScene> {
     scenes("tests/scenes/bad").into_iter().map(BadScene::load).collect()
 }
-
-pub mod sample;
