@@ -1,7 +1,6 @@
 //! Profiles from the scene to the result file: what differs only in how it is written gives the same contact.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use std::path::Path;
@@ -120,14 +119,14 @@ fn nodes_on_sampling_points_have_the_file_s_numbers() {
     let directory = tempfile::tempdir().unwrap();
     let file = directory.path().join("scene.toml");
     let heights = write_cosine(&directory.path().join("wave.txt"), 48);
-    for (sides, extend, from, cells) in [("periodic", "periodic", 0, 48), ("free", "error", 0, 47)] {
+    for (sides, extend, cells) in [("periodic", "periodic", 48), ("free", "error", 47)] {
         let mut text = SCENE.replace("\"periodic\"", &format!("{sides:?}"));
         text = text.replace("[32, 4]", &format!("[{cells}, 1]")).replace("0.02\ndistance = 0.11", "0\nduration = 1");
         text = text.replace("width = 1.0", &format!("width = {:?}", f64::from(cells) / 48.0));
         text += &format!("profile = \"sampled\"\nfile = \"wave.txt\"\nextend = {extend:?}\n");
         let scene = read(&text, &Source { file: file.clone(), overrides: vec![] }).unwrap();
         let profile = shape(&scene, &file, &elevations(&scene, &file).unwrap()).unwrap().profile;
-        for (k, height) in heights.iter().enumerate().skip(from) {
+        for (k, height) in heights.iter().enumerate() {
             // As the mesh has its nodes.
             let x = scene.layer.width * k as f64 / f64::from(cells);
             assert_eq!(profile.at(x).unwrap().height, *height, "{sides} {k}");

@@ -78,25 +78,12 @@ pub fn shape(scene: &Scene, file: &Path, elevations: &[f64]) -> Result<Shape> {
             check_formula(&profile, scene).map_err(|reason| wrong("formula", format!("{formula:?} {reason}")))?;
             repeat(Box::new(profile), 0.5 * width)
         }
-        Indenter::Sampled { extend, period, .. } => {
-            let points: Vec<Point> =
-                elevations.chunks_exact(2).map(|pair| Point { x: pair[0], height: pair[1] }).collect();
-            let span = points[points.len() - 1].x - points[0].x;
-            finest = Some(Finest::Spacing(span / (points.len() - 1) as f64));
-            let count = points.len();
-            let (profile, period) = match extend {
-                Extend::Error => (bounded(points, scene).map_err(|reason| wrong("file", reason))?, None),
-                Extend::Periodic => {
-                    let period = sampled_period(&points, period).map_err(|(key, text)| wrong(key, text))?;
-                    (Sampled::new(points, Some(period)), Some(period))
-                }
-            };
-            if let Some(period) = period.filter(|_| periodic) {
-                let reason = |reason| format!("{reason}; or give indenter.period");
-                scene::whole_periods(width, "periods of the profile", period)
-                    .map_err(|text| Error::scene(file, "layer.width", reason(text)))?;
-            }
-            let repeats = period.map_or(String::new(), |period| format!(", repeating after {period:?} m"));
+        Indenter::Sampled { .. } => {
+            let points = elevations.chunks_exact(2).map(|pair| Point { x: pair[0], height: pair[1] }).collect();
+            let profile = sampled(points, scene, file)?;
+            let (count, span) = (elevations.len() / 2, elevations[elevations.len() - 2] - elevations[0]);
+            finest = Some(Finest::Spacing(span / (count - 1) as f64));
+            let repeats = profile.period().map_or(String::new(), |period| format!(", repeating after {period:?} m"));
             detail = Some(format!("{count} points over {span:?} m{repeats}"));
             Box::new(profile)
         }
@@ -155,26 +142,39 @@ fn check_formula(profile: &Formula, scene: &Scene) -> std::result::Result<(), St
     Ok(())
 }
 
+/// The profile through the points of a file, repeating as the scene says.
+fn sampled(points: Vec<Point>, scene: &Scene, file: &Path) -> Result<Sampled> {
+    let wrong = |key: &str, reason: String| Error::scene(file, key, reason);
+    let Indenter::Sampled { extend: Extend::Periodic, period, .. } = scene.indenter else {
+        return bounded(points, scene).map_err(|reason| wrong("indenter.file", reason));
+    };
+    let period = sampled_period(&points, period).map_err(|reason| wrong("indenter.period", reason))?;
+    if scene.layer.sides == Sides::Periodic {
+        scene::whole_periods(scene.layer.width, "periods of the profile", period)
+            .map_err(|reason| wrong("layer.width", format!("{reason}; or give indenter.period")))?;
+    }
+    Ok(Sampled::new(points, Some(period)))
+}
+
 /// The period of a repeating sampled profile: what the scene says, or what the points say by themselves.
-fn sampled_period(points: &[Point], said: Option<f64>) -> std::result::Result<f64, (&'static str, String)> {
+fn sampled_period(points: &[Point], said: Option<f64>) -> std::result::Result<f64, String> {
     let (first, last) = (points[0], points[points.len() - 1]);
     let span = last.x - first.x;
     let Some(period) = said else {
         return Sampled::natural_period(points).ok_or_else(|| {
-            let reason = "missing, and required where the file's spacing is not uniform and its last elevation is not \
-                          its first: give the distance in m after which the profile repeats";
-            ("period", reason.to_owned())
+            "missing, and required where the file's spacing is not uniform and its last elevation is not \
+                          its first: give the distance in m after which the profile repeats"
+                .to_owned()
         });
     };
     if period < span * (1.0 - 1e-12) {
-        return Err(("period", format!("must be at least the length of the file ({span:?} m), got {period:?}")));
+        return Err(format!("must be at least the length of the file ({span:?} m), got {period:?}"));
     }
     if period <= span * (1.0 + 1e-12) && first.height != last.height {
-        let reason = format!(
+        return Err(format!(
             "is the length of the file, whose ends must then have the same elevation, got {:?} and {:?} m",
             first.height, last.height
-        );
-        return Err(("period", reason));
+        ));
     }
     Ok(period)
 }

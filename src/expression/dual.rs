@@ -79,8 +79,14 @@ pub(super) fn power(a: Dual, b: Dual) -> Dual {
     Dual { value, slope }
 }
 
+/// A function of one argument.
+pub(super) type Unary = fn(Dual) -> Dual;
+
+/// A function of two arguments.
+pub(super) type Binary = fn(Dual, Dual) -> Dual;
+
 /// The functions of one argument.
-pub(super) const UNARY: [(&str, fn(Dual) -> Dual); 19] = [
+pub(super) const UNARY: [(&str, Unary); 19] = [
     ("abs", |a| a.chain(a.value.abs(), sign(a.value))),
     ("sign", |a| a.chain(sign(a.value), 0.0)),
     ("sqrt", |a| a.chain(a.value.sqrt(), 0.5 / a.value.sqrt())),
@@ -103,7 +109,7 @@ pub(super) const UNARY: [(&str, fn(Dual) -> Dual); 19] = [
 ];
 
 /// The functions of two arguments. `mod(a, b)` has the sign of b.
-pub(super) const BINARY: [(&str, fn(Dual, Dual) -> Dual); 5] = [
+pub(super) const BINARY: [(&str, Binary); 5] = [
     ("min", |a, b| if a.value == b.value { mean(a, b) } else { pick(a, b, a.value < b.value) }),
     ("max", |a, b| if a.value == b.value { mean(a, b) } else { pick(a, b, a.value > b.value) }),
     ("atan2", |y, x| {

@@ -10,7 +10,7 @@ use std::fmt;
 
 pub use dual::Dual;
 
-use dual::{BINARY, UNARY, power};
+use dual::{BINARY, Binary, UNARY, Unary, power};
 
 /// An expression of given variables.
 #[derive(Debug, Clone)]
@@ -38,8 +38,8 @@ enum Node {
     Constant(f64),
     /// Index into the variables.
     Variable(usize),
-    Unary(fn(Dual) -> Dual, Box<Node>),
-    Binary(fn(Dual, Dual) -> Dual, Box<[Node; 2]>),
+    Unary(Unary, Box<Node>),
+    Binary(Binary, Box<[Node; 2]>),
 }
 
 /// Longer than any formula by hand, and a tree that no stack minds.
@@ -295,7 +295,7 @@ impl Reader<'_> {
     /// Takes the operator that is next, and its right operand.
     fn operate(
         &mut self,
-        function: fn(Dual, Dual) -> Dual,
+        function: Binary,
         left: Node,
         operand: fn(&mut Self) -> Result<Node, Fault>,
     ) -> Result<Node, Fault> {

@@ -61,6 +61,11 @@ impl Sampled {
         points.windows(2).all(equal).then_some(span + spacing)
     }
 
+    /// What it repeats after, m; None = it is bounded.
+    pub fn period(&self) -> Option<f64> {
+        self.period
+    }
+
     /// The sampling point `k`, counted on through all periods, or None beyond the ends.
     fn point(&self, k: isize) -> Option<Point> {
         let n = self.points.len() as isize;
