@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::composition::{self, Form};
 use crate::output::{HistoryRow, Status};
 use crate::petsc;
-use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides, Strategy};
+use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
 use crate::solve::Counts;
 
 /// What is modelled and what is not: (modelled, not modelled).
@@ -27,8 +27,9 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
         None => no.push("friction (symmetric solver)".to_owned()),
     }
     yes.push(format!(
-        "contact: penalty {:.3e} Pa/m, {} quadrature",
+        "contact: penalty {:.3e} Pa/m ({:.2e} of the compliance to the wave the layer is stiffest to), {} quadrature",
         scene.contact.penalty,
+        added_compliance(scene.contact.penalty, &scene.layer, &scene.material),
         match scene.contact.quadrature {
             Quadrature::Nodal => "nodal",
             Quadrature::Gauss => "two-point Gauss",
