@@ -5,7 +5,7 @@
 //! A run may be killed while it writes, and the file must still open. The HDF5 library gives no such promise: its
 //! flush is a series of writes, and between two of them the file can refer to what is not there yet. So the library
 //! only makes the file, under another name: every dataset at its planned number of rows, in one chunk, with its room
-//! set aside but not filled ([`skeleton`]). Then the number of rows is set to what is really there (one row of the
+//! set aside but not filled (module `skeleton`). Then the number of rows is set to what is really there (one row of the
 //! history), and the file is renamed to its place.
 //!
 //! After that the library is not used any more. Adding rows is (1) writing numbers into room that no extent covers
