@@ -1,20 +1,23 @@
 //! The composition root: the one place that matches on what a scene asks for and builds the parts for it.
 
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::Communicator;
+use mpi::traits::{Communicator, Root};
 
-use crate::bulk::{Bulk, Part, Series};
+use crate::bulk::{Arms, Bulk, Part, Series};
 use crate::element::mpjr::Quadrature;
 use crate::error::Result;
 use crate::friction::Friction;
 use crate::interface::{Interface, Laws};
 use crate::loading::{self, Motion, Phase};
 use crate::mesh::{Layer, Mesh, Sides};
-use crate::petsc::{Matrix, Settings, Vector};
+use crate::parallel::agree;
+use crate::petsc::{Linear, Matrix, Settings, Vector};
 use crate::profile::{Circle, Harmonic, Parabola, Profile, Repeated, Wedge};
 use crate::rheology::{Arm, Memory, Prony};
-use crate::scene::{self, Scene, When};
-use crate::solve::{Body, Limits, Moduli, Monolithic, TransientProblem};
+use crate::scene::{self, PoissonRule, Scene, When};
+use crate::solve::{
+    Body, Compliance, Condensed, Interior, LARGE_FACE, Limits, Moduli, Monolithic, Parts, Relaxation, TransientProblem,
+};
 
 /// A scene made ready to run.
 pub struct Problem {
@@ -35,27 +38,69 @@ pub struct Problem {
 /// Builds what `scene` asks for, distributed over `comm`.
 pub fn build(comm: &SimpleCommunicator, scene: &Scene) -> Result<Problem> {
     let mesh = layer(&scene.layer).mesh();
-    let face = mesh.face.clone();
-    let moduli = moduli(&scene.material);
-    let body = Body::new(comm.duplicate(), mesh.clone(), moduli)?;
-    let u = body.vector()?;
-    let bulk = bulk(scene, &body, moduli, &u)?;
     let laws = Laws {
         profile: profile(scene),
         penalty: scene.contact.penalty,
         friction: scene.friction.as_ref().map(friction),
     };
-    let symmetric = laws.friction.is_none();
-    let interface = Interface::new(face, laws, quadrature(scene.contact.quadrature));
+    let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
+    if is_condensed(scene) { condensed(comm, scene, mesh, interface) } else { monolithic(comm, scene, mesh, interface) }
+}
+
+/// Whether the scene is solved on its contact face alone: where the interior follows the face for all time.
+pub fn is_condensed(scene: &Scene) -> bool {
+    let follows = scene.material.arms.is_empty() || scene.material.poisson_rule == Some(PoissonRule::ConstantRatio);
+    follows && scene.solver.strategy != scene::Strategy::Monolithic
+}
+
+fn monolithic(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
+    let moduli = moduli(&scene.material);
+    let body = Body::new(comm.duplicate(), mesh.clone(), moduli)?;
+    let u = body.vector()?;
+    let bulk = bulk(scene, &body, moduli, &u)?;
     let mut tangent = bulk.new_tangent()?;
     tangent.set_near_null_space(&mut body.coordinates()?)?;
-    if symmetric {
+    let linear = if interface.has_friction() { Linear::Lu } else { Linear::Cholesky };
+    if linear == Linear::Cholesky {
         tangent.declare_positive_definite()?;
     }
-    let limits = Limits::default();
-    let settings = Settings { symmetric, max_newton: limits.max_newton, max_cuts: limits.max_cuts };
     let strategy = Box::new(Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?);
-    Ok(Problem { strategy, tangent, u, phases: phases(scene), settings, mesh })
+    Ok(Problem { strategy, tangent, u, phases: phases(scene), settings: settings(linear), mesh })
+}
+
+fn condensed(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
+    let moduli = moduli(&scene.material);
+    let held: Vec<[bool; 2]> = mesh.face.unknown.iter().map(|&unknown| mesh.held[unknown as usize]).collect();
+    let here = if comm.rank() == 0 { 2 * held.len() } else { 0 };
+    let u = Vector::new(comm, here)?;
+    let mine = if comm.rank() == 0 { compliance(scene, &mesh, moduli).map(Some) } else { Ok(None) };
+    let compliance = agree(comm, mine)?;
+    let mut softness = compliance.as_ref().map_or(0.0, Compliance::largest);
+    comm.process_at_rank(0).broadcast_into(&mut softness);
+    let (series, times) = prony(&scene.material);
+    let relaxation = match series {
+        Some(series) => Some(Relaxation { arms: Arms::new(times, memory(&scene.material), &u)?, series }),
+        None => None,
+    };
+    let interior = Interior::new(comm, mesh.clone(), moduli);
+    let parts = Parts { interface, compliance, softness, relaxation, interior };
+    let linear = if 2 * held.len() > LARGE_FACE { Linear::OwnIterative } else { Linear::Own };
+    let tangent = Matrix::shell(comm, here)?;
+    let strategy = Box::new(Condensed::new(parts, &u, &held, scene.solver.tolerance)?);
+    Ok(Problem { strategy, tangent, u, phases: phases(scene), settings: settings(linear), mesh })
+}
+
+/// The compliance of the face, by this rank alone.
+fn compliance(scene: &Scene, mesh: &Mesh, moduli: Moduli) -> Result<Compliance> {
+    if scene.layer.sides == scene::Sides::Periodic {
+        return Ok(Compliance::of_periodic_layer(&layer(&scene.layer), mesh, moduli));
+    }
+    Compliance::by_schur_complement(&Body::new(SimpleCommunicator::self_comm(), mesh.clone(), moduli)?, moduli)
+}
+
+fn settings(linear: Linear) -> Settings {
+    let Limits { max_newton, max_cuts } = Limits::default();
+    Settings { linear, max_newton, max_cuts }
 }
 
 fn layer(layer: &scene::Layer) -> Layer {
@@ -77,10 +122,7 @@ fn moduli(material: &scene::Material) -> Moduli {
 /// One part where shear and bulk modulus relax together (or not at all), two where only the shear modulus does.
 fn bulk(scene: &Scene, body: &Body, moduli: Moduli, layout: &Vector) -> Result<Bulk> {
     let material = &scene.material;
-    let prony = Prony { arms: material.arms.iter().map(|a| Arm { weight: a.weight, time: a.time }).collect() };
-    let times = prony.arms.iter().map(|arm| arm.time).collect();
-    let series = (!prony.arms.is_empty())
-        .then(|| Series { long_term: prony.long_term(), weights: prony.arms.iter().map(|arm| arm.weight).collect() });
+    let (series, times) = prony(material);
     let part = |moduli, diagonal, series| Ok(Part { stiffness: body.stiffness(moduli, diagonal)?, series });
     let constant_bulk = material.poisson_rule == Some(scene::PoissonRule::ConstantBulkModulus);
     let parts = if constant_bulk && series.is_some() {
@@ -91,11 +133,23 @@ fn bulk(scene: &Scene, body: &Body, moduli: Moduli, layout: &Vector) -> Result<B
     } else {
         vec![part(moduli, moduli.shear, series)?]
     };
-    let memory = match material.memory {
+    Bulk::new(parts, times, memory(material), layout)
+}
+
+/// The Prony series of the shear modulus and its relaxation times, s; no series for an elastic material.
+fn prony(material: &scene::Material) -> (Option<Series>, Vec<f64>) {
+    let prony = Prony { arms: material.arms.iter().map(|a| Arm { weight: a.weight, time: a.time }).collect() };
+    let times = prony.arms.iter().map(|arm| arm.time).collect();
+    let weights = || prony.arms.iter().map(|arm| arm.weight).collect();
+    let series = (!prony.arms.is_empty()).then(|| Series { long_term: prony.long_term(), weights: weights() });
+    (series, times)
+}
+
+fn memory(material: &scene::Material) -> Memory {
+    match material.memory {
         scene::Memory::Exponential => Memory::Exponential,
         scene::Memory::BackwardEuler => Memory::BackwardEuler,
-    };
-    Bulk::new(parts, times, memory, layout)
+    }
 }
 
 /// Under periodic sides every profile repeats with the layer's period.

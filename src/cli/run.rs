@@ -122,7 +122,6 @@ fn solve(session: &Session, world: &SimpleCommunicator, arguments: &RunArguments
 
 /// The scene's stem + `.h5` in the current directory.
 fn default_output(scene: &Path) -> PathBuf {
-    // The stem may hold a dot, which is not an extension's.
     let mut name = scene.file_stem().unwrap_or_default().to_owned();
     name.push(".h5");
     PathBuf::from(name)

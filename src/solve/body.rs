@@ -4,7 +4,6 @@ use mpi::topology::SimpleCommunicator;
 use nalgebra::{SVector, Vector4};
 
 use super::BulkFields;
-use crate::bulk::Bulk;
 use crate::element::quad4::{self, Answer};
 use crate::error::Result;
 use crate::mesh::{Mesh, Numbering};
@@ -91,19 +90,26 @@ impl Body {
         Ok(vector)
     }
 
+    /// The values of `y` at the corners of the cells around this rank's nodes, for [`Self::fields`].
+    pub fn around(&mut self, y: &Vector) -> Result<Vec<f64>> {
+        let recovery = self.recovery(y)?;
+        let mut values = vec![0.0; recovery.gathered];
+        recovery.gather.gather(y, &mut values)?;
+        Ok(values)
+    }
+
+    fn recovery(&mut self, layout: &Vector) -> Result<&mut Recovery> {
+        match &mut self.recovery {
+            Some(recovery) => Ok(recovery),
+            place => Ok(place.insert(Recovery::new(&self.mesh, &self.numbering, layout)?)),
+        }
+    }
+
     /// Displacement and stress at this rank's nodes; stress is the mean of what the cells around a node say.
-    pub fn fields(&mut self, bulk: &mut Bulk, u: &Vector) -> Result<BulkFields> {
-        let recovery = match &mut self.recovery {
-            Some(recovery) => recovery,
-            None => self.recovery.insert(Recovery::new(&self.mesh, &self.numbering, u)?),
-        };
-        let mut effective: Vec<Vec<f64>> = Vec::new();
-        bulk.effective(u, |y| {
-            let mut values = vec![0.0; recovery.gathered];
-            recovery.gather.gather(y, &mut values)?;
-            effective.push(values);
-            Ok(())
-        })?;
+    /// `effective` holds what [`Self::around`] gave for each part's effective displacement.
+    pub fn fields(&mut self, u: &Vector, effective: &[Vec<f64>]) -> Result<BulkFields> {
+        self.recovery(u)?;
+        let Some(recovery) = &self.recovery else { return Ok(BulkFields::default()) };
         // One part answers to both moduli, or the first to shear and the second to bulk.
         let (shear, dilatation) = (&effective[0], &effective[effective.len() - 1]);
         let mut sums = vec![(Vector4::<f64>::zeros(), 0.0); self.numbering.owned.len()];
