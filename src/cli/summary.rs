@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::time::Duration;
 
-use crate::composition::is_condensed;
+use crate::composition::{Form, form};
 use crate::output::{HistoryRow, Status};
 use crate::petsc;
 use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides};
@@ -66,10 +66,10 @@ pub fn plan(scene: &Scene) -> String {
         scene.steps(),
         scene.duration()
     );
-    let strategy = if is_condensed(scene) {
-        "condensed: Newton on the contact face alone, because the interior follows it"
-    } else {
-        "monolithic: all unknowns in one sparse system, factorised at each Newton iteration"
+    let strategy = match form(scene) {
+        Form::Following => "condensed: Newton on the contact face alone, because the interior follows it",
+        Form::Remembering => "condensed: Newton on the contact face, one solve for the interior's memory per step",
+        Form::Monolithic => "monolithic: all unknowns in one sparse system, factorised at each Newton iteration",
     };
     let _ = writeln!(text, "strategy:      {strategy}");
     let _ = write!(
@@ -152,26 +152,27 @@ struct Estimate {
 
 impl Estimate {
     fn of(scene: &Scene) -> Self {
-        if is_condensed(scene) { Self::condensed(scene) } else { Self::monolithic(scene) }
-    }
-
-    /// The compliance of the face is a full matrix, and each Newton iteration goes through a part of it.
-    fn condensed(scene: &Scene) -> Self {
-        let face = scene.layer.cells[0] as f64;
-        let newton = 9.0;
-        Self { step: newton * (4e-4 + 2.5e-8 * face * face), memory: 5e7 + 2.0 * 8.0 * 4.0 * face * face }
-    }
-
-    fn monolithic(scene: &Scene) -> Self {
         let unknowns = scene.unknowns() as f64;
-        // Nested dissection in the plane: n^1.5 operations, n log n entries. Half for a symmetric factorisation.
+        let face = scene.layer.cells[0] as f64;
+        // Half for a symmetric factorisation.
         let symmetry = if scene.friction.is_some() { 1.0 } else { 0.6 };
-        let newton = 3.5;
-        let factorisation = 1.3e-8 * unknowns.powf(1.5) * symmetry;
-        let assembly = 1.0e-6 * unknowns;
-        let entries = 5.0 * unknowns * unknowns.max(2.0).log2() * symmetry;
+        // Nested dissection in the plane: n^1.5 operations, n log n entries.
+        let factorisation = 1.3e-8 * unknowns.powf(1.5);
+        let factor = 8.0 * 5.0 * unknowns * unknowns.max(2.0).log2();
         let matrices = 3.0 * 18.0 * 12.0 * unknowns;
-        Self { step: newton * (factorisation + assembly), memory: 5e7 + 8.0 * entries + matrices }
+        let process = 5e7;
+        // The compliance of the face is a full matrix, and each Newton iteration goes through a part of it.
+        let on_face = Self { step: 9.0 * (4e-4 + 2.5e-8 * face * face), memory: process + 64.0 * face * face };
+        match form(scene) {
+            Form::Following => on_face,
+            Form::Remembering => {
+                Self { step: on_face.step + 1e-6 * unknowns, memory: on_face.memory + 0.6 * factor + matrices }
+            }
+            Form::Monolithic => Self {
+                step: 3.5 * (factorisation * symmetry + 1e-6 * unknowns),
+                memory: process + factor * symmetry + matrices,
+            },
+        }
     }
 }
 
