@@ -101,7 +101,7 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     let Outcome { status, ranks, setup, total, counts } = outcome;
     let (yes, no) = modelled(scene);
     let blas = match petsc::blas_library() {
-        "reference" => "reference BLAS (install libopenblas0-pthread: 2 to 5 times faster)",
+        "reference" => "the reference (OpenBLAS is faster: Debian's libopenblas0-pthread)",
         name => name,
     };
     let linear = counts.total.saturating_sub(counts.assembly + counts.output);
@@ -128,17 +128,17 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     let _ = writeln!(text, "{:<15}{} steps, {} Newton iterations{pieces}", "work:", counts.steps, counts.newton);
     let _ = writeln!(
         text,
-        "{:<15}{} on {ranks} rank(s): set-up {}, assembly {},\n{:<15}linear solver {}, output {}; \
-         {blas}; peak {:.2} GB a rank",
+        "{:<15}{} on {ranks} rank(s): set-up {}, assembly {},\n{:<15}linear solver {}, output {}",
         "time:",
         duration(total),
         duration(setup),
         duration(&counts.assembly),
         "",
         duration(&linear),
-        duration(&counts.output),
-        petsc::peak_memory() as f64 / 1e9
+        duration(&counts.output)
     );
+    let _ = writeln!(text, "{:<15}at most {:.2} GB a rank", "memory:", petsc::peak_memory() as f64 / 1e9);
+    let _ = writeln!(text, "{:<15}{blas}", "BLAS:");
     text
 }
 
