@@ -97,7 +97,7 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     let Outcome { status, ranks, setup, total, counts } = outcome;
     let (yes, no) = modelled(scene);
     let blas = match petsc::blas_library() {
-        "reference" => "reference BLAS (install libopenblas0-pthread: 2 to 5 times faster)",
+        "reference" => "the reference (OpenBLAS is faster: Debian's libopenblas0-pthread)",
         name => name,
     };
     let linear = counts.total.saturating_sub(counts.assembly + counts.output);
@@ -109,8 +109,8 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{:<15}{} at t = {:.6} s", "status:", status.as_str(), last.time);
-    let _ = writeln!(text, "{:<15}{}", "modelled:", yes.join("; "));
-    let _ = writeln!(text, "{:<15}{}", "not modelled:", no.join("; "));
+    let _ = writeln!(text, "{:<15}{}", "modelled:", yes.join("\n               "));
+    let _ = writeln!(text, "{:<15}{}", "not modelled:", no.join("\n               "));
     let _ = writeln!(
         text,
         "{:<15}N = {:.6e}  Q = {:.6e}  hysteretic = {:.6e} N/m",
@@ -118,21 +118,23 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     );
     let _ = writeln!(
         text,
-        "{:<15}{:.4} of the face, {:.4} of it sticking; largest penetration {:.3e} m",
+        "{:<15}{:.4} of the face, {:.4} of it sticking; deepest penetration {:.1e} m",
         "final contact:", last.contact_fraction, last.stick_fraction, last.max_penetration
     );
     let _ = writeln!(text, "{:<15}{} steps, {} Newton iterations{pieces}", "work:", counts.steps, counts.newton);
     let _ = writeln!(
         text,
-        "{:<15}{} on {ranks} rank(s): set-up {}, assembly {}, linear solver {}, output {}; {blas}; peak {:.2} GB a rank",
+        "{:<15}{} on {ranks} rank(s): set-up {}, assembly {},\n{:<15}linear solver {}, output {}",
         "time:",
         duration(total),
         duration(setup),
         duration(&counts.assembly),
+        "",
         duration(&linear),
-        duration(&counts.output),
-        petsc::peak_memory() as f64 / 1e9
+        duration(&counts.output)
     );
+    let _ = writeln!(text, "{:<15}at most {:.2} GB a rank", "memory:", petsc::peak_memory() as f64 / 1e9);
+    let _ = writeln!(text, "{:<15}{blas}", "BLAS:");
     text
 }
 
