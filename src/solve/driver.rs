@@ -59,7 +59,17 @@ pub struct Counts {
 impl<'a> Driver<'a> {
     /// A driver at the beginning of the history.
     pub fn new(problem: &'a mut dyn TransientProblem, observer: &'a mut dyn Observer, phases: &'a [Phase]) -> Self {
-        Self { problem, observer, phases, phase: 0, target: 0, now: 0.0, max_cuts: 0, cuts: 0, counts: Counts::default() }
+        Self {
+            problem,
+            observer,
+            phases,
+            phase: 0,
+            target: 0,
+            now: 0.0,
+            max_cuts: 0,
+            cuts: 0,
+            counts: Counts::default(),
+        }
     }
 
     /// Runs the whole history from rest; `u` ends as the last accepted state.
@@ -98,7 +108,11 @@ impl<'a> Driver<'a> {
         let remaining = target.time - self.now;
         if remaining > 1e-9 * target.dt {
             // Inside a planned step that was cut: grow back by two.
-            return Next::Step { now: self.now, dt: remaining.min(2.0 * dt), max_cuts: max_cuts.saturating_sub(self.cuts) };
+            return Next::Step {
+                now: self.now,
+                dt: remaining.min(2.0 * dt),
+                max_cuts: max_cuts.saturating_sub(self.cuts),
+            };
         }
         self.cuts = 0;
         self.now = target.time;

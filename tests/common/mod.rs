@@ -1,7 +1,8 @@
 //! Shared by the integration tests; each uses a part of it.
-#![allow(dead_code)]
+#![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 pub mod mpi;
+pub mod program;
 pub mod sample;
 
 use std::path::{Path, PathBuf};
@@ -68,5 +69,3 @@ pub fn scenes(path: &str) -> Vec<PathBuf> {
 pub fn bad_scenes() -> Vec<BadScene> {
     scenes("tests/scenes/bad").into_iter().map(BadScene::load).collect()
 }
-
-pub mod sample;

@@ -95,7 +95,8 @@ impl Run {
 }
 
 impl Outcome {
-    fn new(output: Output, directory: TempDir) -> Self {
+    /// Of an output in a directory.
+    pub fn new(output: Output, directory: TempDir) -> Self {
         Self {
             directory,
             // A signal leaves no code.
@@ -137,7 +138,8 @@ impl Outcome {
     /// Asserts that no panic and no library's stack trace was printed.
     pub fn assert_clean(&self) {
         for text in [&self.stdout, &self.stderr] {
-            for trace in ["panicked", "RUST_BACKTRACE", "PETSC ERROR", "HDF5-DIAG", "MPI_ABORT", "Segmentation", "*** "] {
+            for trace in ["panicked", "RUST_BACKTRACE", "PETSC ERROR", "HDF5-DIAG", "MPI_ABORT", "Segmentation", "*** "]
+            {
                 assert!(!text.contains(trace), "{trace:?} in:\n{text}");
             }
         }
@@ -145,7 +147,7 @@ impl Outcome {
 }
 
 /// The program on `ranks`, without a launcher on one.
-fn program(ranks: usize) -> Command {
+pub fn program(ranks: usize) -> Command {
     if ranks == 1 {
         return Command::new(MPJR);
     }
