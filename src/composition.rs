@@ -34,17 +34,18 @@ pub struct Problem {
 
 /// Builds what `scene` asks for, distributed over `comm`.
 pub fn build(comm: &SimpleCommunicator, scene: &Scene) -> Result<Problem> {
+    build_with_profile(comm, scene, profile(scene))
+}
+
+/// As [`build`], with another profile than the scene's.
+pub fn build_with_profile(comm: &SimpleCommunicator, scene: &Scene, profile: Box<dyn Profile>) -> Result<Problem> {
     let mesh = layer(&scene.layer).mesh();
     let face = mesh.face.clone();
     let moduli = moduli(&scene.material);
     let body = Body::new(comm.duplicate(), mesh.clone(), moduli)?;
     let u = body.vector()?;
     let bulk = bulk(scene, &body, moduli, &u)?;
-    let laws = Laws {
-        profile: profile(scene),
-        penalty: scene.contact.penalty,
-        friction: scene.friction.as_ref().map(friction),
-    };
+    let laws = Laws { profile, penalty: scene.contact.penalty, friction: scene.friction.as_ref().map(friction) };
     let symmetric = laws.friction.is_none();
     let interface = Interface::new(face, laws, quadrature(scene.contact.quadrature));
     let mut tangent = bulk.new_tangent()?;

@@ -13,8 +13,13 @@ use mpjr::output::{HistoryRow, Recorder, Status, reader::Results};
 
 fn main() {
     common::mpi::main(&[
-        Case { name: "frames_do_not_depend_on_ranks", ranks: &[1, 2, 3, 4], body: frames_do_not_depend_on_ranks },
-        Case { name: "errors_reach_every_rank", ranks: &[1, 2, 3], body: errors_reach_every_rank },
+        Case {
+            name: "frames_do_not_depend_on_ranks",
+            ranks: &[1, 2, 3, 4],
+            petsc: "",
+            body: frames_do_not_depend_on_ranks,
+        },
+        Case { name: "errors_reach_every_rank", ranks: &[1, 2, 3], petsc: "", body: errors_reach_every_rank },
     ]);
 }
 

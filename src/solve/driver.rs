@@ -14,15 +14,19 @@ use crate::petsc::{Accepted, Implicit, Integrator, Matrix, Next, Settings, Step,
 pub struct Limits {
     /// Newton iterations per attempt.
     pub max_newton: usize,
-    /// How often a planned step may be cut by four, all its pieces together.
+    /// How often in succession a step may be cut by four.
     pub max_cuts: usize,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { max_newton: 30, max_cuts: 12 }
+        Self { max_newton: 30, max_cuts: 8 }
     }
 }
+
+/// How often a planned step may be cut, all its pieces together: pieces grow back by two, so that one which needs a 32nd
+/// of the planned step throughout is cut about twenty times.
+const MOST_CUTS: usize = 40;
 
 /// A problem on its way through its phases.
 pub struct Driver<'a> {
@@ -108,11 +112,8 @@ impl<'a> Driver<'a> {
         let remaining = target.time - self.now;
         if remaining > 1e-9 * target.dt {
             // Inside a planned step that was cut: grow back by two.
-            return Next::Step {
-                now: self.now,
-                dt: remaining.min(2.0 * dt),
-                max_cuts: max_cuts.saturating_sub(self.cuts),
-            };
+            let left = MOST_CUTS.saturating_sub(self.cuts);
+            return Next::Step { now: self.now, dt: remaining.min(2.0 * dt), max_cuts: max_cuts.min(left) };
         }
         self.cuts = 0;
         self.now = target.time;

@@ -9,10 +9,11 @@ use libtest_mimic::{Arguments, Failed, Trial};
 /// The argument before the name of the body.
 const BODY: &str = "--mpi-body";
 
-/// A test: its name, the ranks to run it on, and what every rank does.
+/// A test: its name, the ranks to run it on, PETSc options separated by spaces, and what every rank does.
 pub struct Case {
     pub name: &'static str,
     pub ranks: &'static [usize],
+    pub petsc: &'static str,
     pub body: fn(&mpi::topology::SimpleCommunicator, &Path),
 }
 
@@ -34,9 +35,10 @@ pub fn main(cases: &'static [Case]) {
 }
 
 fn run_body(cases: &[Case], name: &str, directory: &Path) {
-    let universe = mpi::initialize().unwrap();
-    let world = universe.world();
     let case = cases.iter().find(|case| case.name == name).unwrap();
+    let options: Vec<String> = case.petsc.split_whitespace().map(str::to_owned).collect();
+    let session = mpjr::petsc::Session::start(&options).unwrap();
+    let world = session.world();
     // A panic on one rank must end the others too: mpirun sees to that when a process aborts.
     if std::panic::catch_unwind(|| (case.body)(&world, directory)).is_err() {
         std::process::abort();
