@@ -1,20 +1,25 @@
 //! The composition root: the one place that matches on what a scene asks for and builds the parts for it.
 
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::Communicator;
+use mpi::traits::{Communicator, Root};
 
-use crate::bulk::{Bulk, Part, Series};
+use crate::bulk::{Arms, Bulk, Part, Series};
 use crate::element::mpjr::Quadrature;
+use crate::element::quad4;
 use crate::error::Result;
 use crate::friction::Friction;
 use crate::interface::{Interface, Laws};
 use crate::loading::{self, Motion, Phase};
 use crate::mesh::{Layer, Mesh, Sides};
-use crate::petsc::{Matrix, Settings, Vector};
+use crate::parallel::agree;
+use crate::petsc::{Linear, Matrix, Settings, Vector};
 use crate::profile::{Circle, Harmonic, Parabola, Profile, Repeated, Wedge};
 use crate::rheology::{Arm, Memory, Prony};
-use crate::scene::{self, Scene, When};
-use crate::solve::{Body, Limits, Moduli, Monolithic, TransientProblem};
+use crate::scene::{self, PoissonRule, Scene, When};
+use crate::solve::{
+    Backing, Body, Compliance, Condensed, Following, Interior, LARGE_FACE, Limits, Moduli, Monolithic, Relaxation,
+    Remembering, Source, TransientProblem,
+};
 
 /// A scene made ready to run.
 pub struct Problem {
@@ -40,23 +45,125 @@ pub fn build(comm: &SimpleCommunicator, scene: &Scene) -> Result<Problem> {
 /// As [`build`], with another profile than the scene's.
 pub fn build_with_profile(comm: &SimpleCommunicator, scene: &Scene, profile: Box<dyn Profile>) -> Result<Problem> {
     let mesh = layer(&scene.layer).mesh();
-    let face = mesh.face.clone();
+    let laws = Laws { profile, penalty: scene.contact.penalty, friction: scene.friction.as_ref().map(friction) };
+    let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
+    match form(scene) {
+        Form::Monolithic => monolithic(comm, scene, mesh, interface),
+        Form::Following => following(comm, scene, mesh, interface),
+        Form::Remembering => remembering(comm, scene, mesh, interface),
+    }
+}
+
+/// How a scene is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// All unknowns.
+    Monolithic,
+    /// On the face; the interior follows it for all time.
+    Following,
+    /// On the face; the interior has a memory of its own.
+    Remembering,
+}
+
+/// How `scene` is solved: on its contact face unless it says otherwise.
+pub fn form(scene: &Scene) -> Form {
+    let follows = scene.material.arms.is_empty() || scene.material.poisson_rule == Some(PoissonRule::ConstantRatio);
+    match scene.solver.strategy {
+        scene::Strategy::Monolithic => Form::Monolithic,
+        scene::Strategy::Auto | scene::Strategy::Condensed if follows => Form::Following,
+        scene::Strategy::Auto | scene::Strategy::Condensed => Form::Remembering,
+    }
+}
+
+fn monolithic(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
     let moduli = moduli(&scene.material);
     let body = Body::new(comm.duplicate(), mesh.clone(), moduli)?;
     let u = body.vector()?;
     let bulk = bulk(scene, &body, moduli, &u)?;
-    let laws = Laws { profile, penalty: scene.contact.penalty, friction: scene.friction.as_ref().map(friction) };
-    let symmetric = laws.friction.is_none();
-    let interface = Interface::new(face, laws, quadrature(scene.contact.quadrature));
     let mut tangent = bulk.new_tangent()?;
     tangent.set_near_null_space(&mut body.coordinates()?)?;
-    if symmetric {
+    let linear = if interface.has_friction() { Linear::Lu } else { Linear::Cholesky };
+    if linear == Linear::Cholesky {
         tangent.declare_positive_definite()?;
     }
-    let limits = Limits::default();
-    let settings = Settings { symmetric, max_newton: limits.max_newton, max_cuts: limits.max_cuts };
     let strategy = Box::new(Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?);
-    Ok(Problem { strategy, tangent, u, phases: phases(scene), settings, mesh })
+    Ok(Problem { strategy, tangent, u, phases: phases(scene), settings: settings(linear), mesh })
+}
+
+fn following(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
+    let moduli = moduli(&scene.material);
+    let u = face_vector(comm, &mesh)?;
+    let mine = if comm.rank() == 0 { compliance(scene, &mesh, moduli).map(Some) } else { Ok(None) };
+    let compliance = agree(comm, mine)?;
+    let mut softness = compliance.as_ref().map_or(0.0, Compliance::largest);
+    comm.process_at_rank(0).broadcast_into(&mut softness);
+    let (series, times) = prony(&scene.material);
+    let relaxation = match series {
+        Some(series) => Some(Relaxation { arms: Arms::new(times, memory(&scene.material), &u)?, series }),
+        None => None,
+    };
+    let interior = Interior::new(comm, mesh.clone(), moduli);
+    let backing = Following { compliance, softness, relaxation, interior, secant: 1.0 };
+    condensed(comm, scene, mesh, u, (interface, backing))
+}
+
+fn remembering(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
+    let moduli = moduli(&scene.material);
+    let whole = if comm.rank() == 0 { whole_body(scene, &mesh, moduli).map(Some) } else { Ok(None) };
+    let source = match scene.layer.sides {
+        scene::Sides::Periodic => {
+            Source::Periodic { cells: column(scene, &mesh), columns: scene.layer.cells[0], moduli }
+        }
+        _ => Source::Schur,
+    };
+    let backing = Remembering::new(comm, agree(comm, whole)?, source)?;
+    let u = face_vector(comm, &mesh)?;
+    condensed(comm, scene, mesh, u, (interface, backing))
+}
+
+fn condensed<B: Backing + 'static>(
+    comm: &SimpleCommunicator,
+    scene: &Scene,
+    mesh: Mesh,
+    u: Vector,
+    (interface, backing): (Interface, B),
+) -> Result<Problem> {
+    let held: Vec<[bool; 2]> = mesh.face.unknown.iter().map(|&unknown| mesh.held[unknown as usize]).collect();
+    let linear = if 2 * held.len() > LARGE_FACE { Linear::OwnIterative } else { Linear::Own };
+    let tangent = Matrix::shell(comm, u.local_len())?;
+    let strategy = Box::new(Condensed::new(interface, backing, &u, &held, scene.solver.tolerance)?);
+    Ok(Problem { strategy, tangent, u, phases: phases(scene), settings: settings(linear), mesh })
+}
+
+/// x, z of each face node, on rank 0.
+fn face_vector(comm: &SimpleCommunicator, mesh: &Mesh) -> Result<Vector> {
+    Vector::new(comm, if comm.rank() == 0 { 2 * mesh.face.unknown.len() } else { 0 })
+}
+
+/// The compliance of the face, by this rank alone.
+fn compliance(scene: &Scene, mesh: &Mesh, moduli: Moduli) -> Result<Compliance> {
+    if scene.layer.sides == scene::Sides::Periodic {
+        let cells: Vec<_> = column(scene, mesh).iter().map(|split| moduli.stiffness(split)).collect();
+        return Ok(Compliance::of_periodic_columns(&cells, scene.layer.cells[0]));
+    }
+    Compliance::by_schur_complement(&Body::new(SimpleCommunicator::self_comm(), mesh.clone(), moduli)?, moduli)
+}
+
+/// The whole body with its memory, on this rank alone.
+fn whole_body(scene: &Scene, mesh: &Mesh, moduli: Moduli) -> Result<(Bulk, Body)> {
+    let body = Body::new(SimpleCommunicator::self_comm(), mesh.clone(), moduli)?;
+    let bulk = bulk(scene, &body, moduli, &body.vector()?)?;
+    Ok((bulk, body))
+}
+
+/// The cells of one column of the layer, from the top down.
+fn column(scene: &Scene, mesh: &Mesh) -> Vec<quad4::Split> {
+    (0..scene.layer.cells[1]).map(|cell| quad4::stiffness(&mesh.corners(cell))).collect()
+}
+
+fn settings(linear: Linear) -> Settings {
+    let Limits { max_newton, max_cuts } = Limits::default();
+    Settings { linear, max_newton, max_cuts }
 }
 
 fn layer(layer: &scene::Layer) -> Layer {
@@ -78,10 +185,7 @@ fn moduli(material: &scene::Material) -> Moduli {
 /// One part where shear and bulk modulus relax together (or not at all), two where only the shear modulus does.
 fn bulk(scene: &Scene, body: &Body, moduli: Moduli, layout: &Vector) -> Result<Bulk> {
     let material = &scene.material;
-    let prony = Prony { arms: material.arms.iter().map(|a| Arm { weight: a.weight, time: a.time }).collect() };
-    let times = prony.arms.iter().map(|arm| arm.time).collect();
-    let series = (!prony.arms.is_empty())
-        .then(|| Series { long_term: prony.long_term(), weights: prony.arms.iter().map(|arm| arm.weight).collect() });
+    let (series, times) = prony(material);
     let part = |moduli, diagonal, series| Ok(Part { stiffness: body.stiffness(moduli, diagonal)?, series });
     let constant_bulk = material.poisson_rule == Some(scene::PoissonRule::ConstantBulkModulus);
     let parts = if constant_bulk && series.is_some() {
@@ -92,11 +196,23 @@ fn bulk(scene: &Scene, body: &Body, moduli: Moduli, layout: &Vector) -> Result<B
     } else {
         vec![part(moduli, moduli.shear, series)?]
     };
-    let memory = match material.memory {
+    Bulk::new(parts, times, memory(material), layout)
+}
+
+/// The Prony series of the shear modulus and its relaxation times, s; no series for an elastic material.
+fn prony(material: &scene::Material) -> (Option<Series>, Vec<f64>) {
+    let prony = Prony { arms: material.arms.iter().map(|a| Arm { weight: a.weight, time: a.time }).collect() };
+    let times = prony.arms.iter().map(|arm| arm.time).collect();
+    let weights = || prony.arms.iter().map(|arm| arm.weight).collect();
+    let series = (!prony.arms.is_empty()).then(|| Series { long_term: prony.long_term(), weights: weights() });
+    (series, times)
+}
+
+fn memory(material: &scene::Material) -> Memory {
+    match material.memory {
         scene::Memory::Exponential => Memory::Exponential,
         scene::Memory::BackwardEuler => Memory::BackwardEuler,
-    };
-    Bulk::new(parts, times, memory, layout)
+    }
 }
 
 /// Under periodic sides every profile repeats with the layer's period.

@@ -4,6 +4,7 @@
 //! All times are sums of powers of two, so that the steps themselves are the same to the last bit.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[allow(dead_code)]
 mod common;
 
 use std::cell::Cell;
@@ -24,24 +25,14 @@ use mpjr::solve::{Driver, Observer, Report};
 /// whole, and the cells are dealt out in order.
 const REPEATABLE: &str = "-pc_type redundant -mat_partitioning_type average";
 
+const CASES: &[Case] = &[
+    Case { petsc: REPEATABLE, ..Case::new("a_profile_that_fails_once", &[1, 2], a_profile_that_fails_once) },
+    Case { petsc: REPEATABLE, ..Case::new("newton_that_gives_up", &[1, 2], newton_that_gives_up) },
+    Case::new("condensed", &[1, 2], condensed),
+];
+
 fn main() {
-    common::mpi::main(&[
-        Case {
-            name: "a_profile_that_fails_once",
-            ranks: &[1, 2],
-            petsc: REPEATABLE,
-            body: |world, _| {
-                RULES.into_iter().for_each(|rule| a_profile_that_fails_once(world, &scene(rule, "monolithic")))
-            },
-        },
-        Case {
-            name: "newton_that_gives_up",
-            ranks: &[1, 2],
-            petsc: REPEATABLE,
-            body: |world, _| RULES.into_iter().for_each(|rule| newton_that_gives_up(world, &scene(rule, "monolithic"))),
-        },
-        Case { name: "the_strategy_that_auto_picks", ranks: &[1], petsc: "", body: the_strategy_that_auto_picks },
-    ]);
+    common::mpi::main(CASES);
 }
 
 const SURFACE: Harmonic = Harmonic { amplitude: 5e-4, wavelength: 1.0 };
@@ -150,7 +141,7 @@ fn assert_same(met: &Told, planned: &Told) {
 
 /// The profile fails when the node at 9/16 first meets it at the end of the second step of the slide. The step of dt is
 /// then taken as dt/4, dt/2, dt/4.
-fn a_profile_that_fails_once(world: &SimpleCommunicator, scene: &Scene) {
+fn profile_fails(world: &SimpleCommunicator, scene: &Scene) {
     let failed = Rc::new(Cell::new(false));
     let profile = FailsOnce { at: 9.0 / 16.0 - VELOCITY * 0.5, failed: failed.clone() };
     let met = run(world, composition::build_with_profile(world, scene, Box::new(profile)).unwrap());
@@ -165,7 +156,7 @@ fn a_profile_that_fails_once(world: &SimpleCommunicator, scene: &Scene) {
 
 /// Newton's method is allowed so few iterations that some steps fail half way; then all steps that were accepted are
 /// planned in a run that may take as many as it likes.
-fn newton_that_gives_up(world: &SimpleCommunicator, scene: &Scene) {
+fn newton_fails(world: &SimpleCommunicator, scene: &Scene) {
     let mut problem = composition::build(world, scene).unwrap();
     problem.settings.max_newton = 4;
     let met = run(world, problem);
@@ -176,9 +167,22 @@ fn newton_that_gives_up(world: &SimpleCommunicator, scene: &Scene) {
     assert_same(&met, &run(world, problem));
 }
 
-fn the_strategy_that_auto_picks(world: &SimpleCommunicator, _: &Path) {
+fn a_profile_that_fails_once(world: &SimpleCommunicator, _: &Path) {
     for rule in RULES {
-        a_profile_that_fails_once(world, &scene(rule, "auto"));
-        newton_that_gives_up(world, &scene(rule, "auto"));
+        profile_fails(world, &scene(rule, "monolithic"));
+    }
+}
+
+fn newton_that_gives_up(world: &SimpleCommunicator, _: &Path) {
+    for rule in RULES {
+        newton_fails(world, &scene(rule, "monolithic"));
+    }
+}
+
+/// Both, condensed on the contact face.
+fn condensed(world: &SimpleCommunicator, _: &Path) {
+    for rule in RULES {
+        profile_fails(world, &scene(rule, "condensed"));
+        newton_fails(world, &scene(rule, "condensed"));
     }
 }

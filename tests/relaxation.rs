@@ -11,6 +11,7 @@
 //! Over a ramp d is linear only if the contact is rigid; then the exponential memory is exact.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[allow(dead_code)]
 mod common;
 
 use common::program::{Outcome, Run};

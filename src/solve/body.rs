@@ -4,7 +4,6 @@ use mpi::topology::SimpleCommunicator;
 use nalgebra::{SVector, Vector4};
 
 use super::BulkFields;
-use crate::bulk::Bulk;
 use crate::element::quad4::{self, Answer};
 use crate::error::Result;
 use crate::mesh::{Mesh, Numbering};
@@ -17,6 +16,13 @@ pub struct Moduli {
     pub shear: f64,
     /// K
     pub bulk: f64,
+}
+
+impl Moduli {
+    /// The stiffness of an element of these moduli.
+    pub fn stiffness(&self, split: &quad4::Split) -> quad4::Stiffness {
+        split.deviatoric * self.shear + split.volumetric * self.bulk
+    }
 }
 
 /// A mesh distributed over the ranks of a communicator, of one material.
@@ -67,8 +73,7 @@ impl Body {
     pub fn stiffness(&self, moduli: Moduli, diagonal: f64) -> Result<Matrix> {
         let mut matrix = Matrix::new(&self.comm, &self.pattern)?;
         for &cell in &self.numbering.cells {
-            let split = quad4::stiffness(&self.mesh.corners(cell));
-            let stiffness = split.deviatoric * moduli.shear + split.volumetric * moduli.bulk;
+            let stiffness = moduli.stiffness(&quad4::stiffness(&self.mesh.corners(cell)));
             let nodes = self.mesh.cell_unknowns(cell).map(|unknown| self.numbering.global[unknown as usize]);
             // Column-major and symmetric, so row-major too.
             matrix.add_blocks(&nodes, stiffness.as_slice())?;
@@ -91,19 +96,26 @@ impl Body {
         Ok(vector)
     }
 
+    /// The values of `y` at the corners of the cells around this rank's nodes, for [`Self::fields`].
+    pub fn around(&mut self, y: &Vector) -> Result<Vec<f64>> {
+        let recovery = self.recovery(y)?;
+        let mut values = vec![0.0; recovery.gathered];
+        recovery.gather.gather(y, &mut values)?;
+        Ok(values)
+    }
+
+    fn recovery(&mut self, layout: &Vector) -> Result<&mut Recovery> {
+        match &mut self.recovery {
+            Some(recovery) => Ok(recovery),
+            place => Ok(place.insert(Recovery::new(&self.mesh, &self.numbering, layout)?)),
+        }
+    }
+
     /// Displacement and stress at this rank's nodes; stress is the mean of what the cells around a node say.
-    pub fn fields(&mut self, bulk: &mut Bulk, u: &Vector) -> Result<BulkFields> {
-        let recovery = match &mut self.recovery {
-            Some(recovery) => recovery,
-            None => self.recovery.insert(Recovery::new(&self.mesh, &self.numbering, u)?),
-        };
-        let mut effective: Vec<Vec<f64>> = Vec::new();
-        bulk.effective(u, |y| {
-            let mut values = vec![0.0; recovery.gathered];
-            recovery.gather.gather(y, &mut values)?;
-            effective.push(values);
-            Ok(())
-        })?;
+    /// `effective` holds what [`Self::around`] gave for each part's effective displacement.
+    pub fn fields(&mut self, u: &Vector, effective: &[Vec<f64>]) -> Result<BulkFields> {
+        self.recovery(u)?;
+        let Some(recovery) = &self.recovery else { return Ok(BulkFields::default()) };
         // One part answers to both moduli, or the first to shear and the second to bulk.
         let (shear, dilatation) = (&effective[0], &effective[effective.len() - 1]);
         let mut sums = vec![(Vector4::<f64>::zeros(), 0.0); self.numbering.owned.len()];

@@ -1,6 +1,4 @@
 //! Shared by the integration tests; each uses a part of it.
-#![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 pub mod mpi;
 pub mod program;
 pub mod sample;
