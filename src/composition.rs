@@ -17,6 +17,7 @@ use crate::loading::{self, Motion, Phase};
 use crate::mesh::{Layer, Mesh, Sides};
 use crate::parallel::{agree, share_numbers};
 use crate::petsc::{Linear, Matrix, Settings, Vector};
+use crate::profile::Profile;
 use crate::rheology::{Arm, Memory, Prony};
 use crate::scene::{self, PoissonRule, Scene, When};
 use crate::solve::{
@@ -47,13 +48,13 @@ pub struct Problem {
 pub fn build(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Problem> {
     // First what the scene may be refused for.
     let elevations = share_numbers(comm, || elevations(scene, file))?;
-    let shape = shape(scene, file, &elevations)?;
+    build_with_profile(comm, scene, shape(scene, file, &elevations)?.profile)
+}
+
+/// As [`build`], with another profile than the scene's.
+pub fn build_with_profile(comm: &SimpleCommunicator, scene: &Scene, profile: Box<dyn Profile>) -> Result<Problem> {
     let mesh = layer(&scene.layer).mesh();
-    let laws = Laws {
-        profile: shape.profile,
-        penalty: scene.contact.penalty,
-        friction: scene.friction.as_ref().map(friction),
-    };
+    let laws = Laws { profile, penalty: scene.contact.penalty, friction: scene.friction.as_ref().map(friction) };
     let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
     match form(scene) {
         Form::Monolithic => monolithic(comm, scene, mesh, interface),

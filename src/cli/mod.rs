@@ -10,7 +10,7 @@ mod summary;
 
 use clap::{Parser, Subcommand};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// Transient viscoelastic contact with friction, by interface finite elements with embedded profiles (MPJR).
 ///
@@ -42,7 +42,7 @@ pub fn main() -> i32 {
                 // Nothing is left to do when even the terminal cannot be written to.
                 let _ = message.print();
             }
-            return if message.use_stderr() { 2 } else { 0 };
+            return exit_code(if message.use_stderr() { 2 } else { 0 });
         }
     };
     let outcome: Result<()> = match arguments.command {
@@ -59,13 +59,21 @@ pub fn main() -> i32 {
     };
     match outcome {
         Ok(()) => 0,
+        // Defects may be this process's alone; of anything else the first process tells.
+        Err(error @ Error::Internal(_)) if !is_first_process() => error.exit_code(),
         Err(error) => {
             if is_first_process() {
                 eprintln!("mpjr: {error}");
             }
-            error.exit_code()
+            exit_code(error.exit_code())
         }
     }
+}
+
+/// The exit code of an outcome that all processes share. Only the first process tells it: a launcher ends all of them
+/// as soon as one fails, and would cut off the message of the first.
+fn exit_code(code: i32) -> i32 {
+    if is_first_process() { code } else { 0 }
 }
 
 /// Whether this process is alone or rank 0 of its launcher: known without MPI, so that what needs no solver starts none.

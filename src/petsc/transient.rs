@@ -29,6 +29,8 @@ pub struct Accepted {
     pub step: Step,
     /// Newton iterations it took, those of rejected attempts included.
     pub newton: usize,
+    /// How often it was cut before it was accepted.
+    pub cuts: usize,
 }
 
 /// What follows an accepted step.
@@ -41,8 +43,8 @@ pub enum Next {
         now: f64,
         /// s
         dt: f64,
-        /// How often it may be cut by four before the solve fails.
-        cuts: usize,
+        /// How often it may be cut (by four each time) before the solve fails.
+        max_cuts: usize,
     },
     /// The end.
     Stop,
@@ -103,7 +105,7 @@ pub struct Settings {
     pub linear: Linear,
     /// Newton iterations per attempt before the step is cut.
     pub max_newton: usize,
-    /// How often the first step may be cut by four before the solve fails.
+    /// How often the first step may be cut (by four each time) before the solve fails; see [`Next::Step`].
     pub max_cuts: usize,
 }
 
@@ -119,6 +121,8 @@ struct Context<'a, P> {
     problem: &'a mut P,
     step: Step,
     newton: usize,
+    /// Steps cut since TS began.
+    cuts: i32,
     error: Option<Error>,
 }
 
@@ -138,8 +142,9 @@ impl Integrator {
             check(ffi::TSSetMaxTime(ts, f64::MAX))?;
             check(ffi::TSSetMaxSteps(ts, i32::MAX - 1))?;
             check(ffi::TSSetMaxSNESFailures(ts, -1))?;
-            check(ffi::TSSetErrorIfStepFails(ts, ffi::PetscBool_PETSC_FALSE))?;
             check(ffi::TSSetMaxStepRejections(ts, settings.max_cuts as i32))?;
+            // A step that fails for good is a converged reason to be read, not an error of PETSc.
+            check(ffi::TSSetErrorIfStepFails(ts, ffi::PetscBool_PETSC_FALSE))?;
             let mut adapt = null_mut();
             check(ffi::TSGetAdapt(ts, &mut adapt))?;
             check(ffi::TSAdaptSetType(adapt, c"none".as_ptr()))?;
@@ -180,7 +185,7 @@ impl Integrator {
         u: &mut Vector,
         start: Step,
     ) -> Result<()> {
-        let mut context = Context { problem, step: start, newton: 0, error: None };
+        let mut context = Context { problem, step: start, newton: 0, cuts: 0, error: None };
         let pointer = (&raw mut context).cast::<c_void>();
         let (ts, mut snes, mut reason) = (self.ts, null_mut(), 0);
         // SAFETY: `context` outlives TSSolve, the only call that runs the callbacks; PETSc gives each callback the
@@ -362,12 +367,23 @@ unsafe extern "C" fn post_step<P: Implicit>(ts: ffi::TS) -> ffi::PetscErrorCode 
         guarded::<P>(pointer, |context| {
             let mut u = null_mut();
             check(ffi::TSGetSolution(ts, &mut u))?;
-            let accepted = Accepted { step: context.step, newton: std::mem::take(&mut context.newton) };
+            let (mut reason, mut cuts) = (0, 0);
+            check(ffi::TSGetConvergedReason(ts, &mut reason))?;
+            if reason < 0 {
+                // TS also comes here after a step that failed for good.
+                return Ok(());
+            }
+            check(ffi::TSGetStepRejections(ts, &mut cuts))?;
+            let accepted = Accepted {
+                step: context.step,
+                newton: std::mem::take(&mut context.newton),
+                cuts: (cuts - std::mem::replace(&mut context.cuts, cuts)) as usize,
+            };
             match context.problem.accepted(accepted, &Vector::borrow(u))? {
-                Next::Step { now, dt, cuts } => {
+                Next::Step { now, dt, max_cuts } => {
                     check(ffi::TSSetTime(ts, now))?;
-                    check(ffi::TSSetMaxStepRejections(ts, cuts as i32))?;
-                    check(ffi::TSSetTimeStep(ts, dt))
+                    check(ffi::TSSetTimeStep(ts, dt))?;
+                    check(ffi::TSSetMaxStepRejections(ts, max_cuts as i32))
                 }
                 Next::Stop => check(ffi::TSSetConvergedReason(ts, ffi::TSConvergedReason_TS_CONVERGED_USER)),
             }
