@@ -226,11 +226,19 @@ impl Random {
         choices[self.below(choices.len() as u64) as usize].clone()
     }
 
+    /// Weights that sum to less than 1.
+    fn arms(&mut self, count: u64) -> Vec<Arm> {
+        (0..count).map(|_| Arm { weight: 0.999 * self.unit() / count as f64, time: self.positive() }).collect()
+    }
+
     fn scene(&mut self) -> Scene {
         let arms = self.below(4);
         let wavelength = self.positive();
         let count = 1 + self.below(4) as usize;
         let phases: Vec<Phase> = (0..count).map(|index| self.phase(index)).collect();
+        let poisson_rule =
+            self.of(&[PoissonRule::ConstantRatio, PoissonRule::ConstantBulkModulus, PoissonRule::BulkArms]);
+        let bulk_arms = if poisson_rule == PoissonRule::BulkArms { 1 + self.below(3) } else { 0 };
         let radius = self.positive();
         let centre = self.unit() - 0.5;
         let friction =
@@ -249,8 +257,10 @@ impl Random {
             material: Material {
                 shear_modulus: 1e9 * self.positive(),
                 poisson_ratio: 1.4 * self.unit() - 0.9,
-                arms: (0..arms).map(|_| Arm { weight: self.unit() / arms as f64, time: self.positive() }).collect(),
-                poisson_rule: Some(self.of(&[PoissonRule::ConstantRatio, PoissonRule::ConstantBulkModulus])),
+                arms: self.arms(arms),
+                poisson_rule: Some(poisson_rule),
+                bulk_arms: self.arms(bulk_arms),
+                notes: self.of(&[vec![], vec!["read from \"a\"".to_owned(), "é".to_owned()]]),
                 memory: self.of(&[Memory::Exponential, Memory::BackwardEuler]),
             },
             indenter: self.of(&[
