@@ -4,7 +4,7 @@
 #[allow(dead_code)]
 mod common;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use mpjr::error::{Error, Result};
 use mpjr::scene::*;
@@ -33,7 +33,7 @@ distance = 1.0
 steps = 2
 "#;
 
-fn read_with(text: &str, overrides: &[&str]) -> Result<Scene> {
+fn read_set(text: &str, overrides: &[&str]) -> Result<Scene> {
     let overrides = overrides.iter().map(|text| text.to_string()).collect();
     read(text, &Source { file: PathBuf::from("dir/smallest.toml"), overrides })
 }
@@ -47,7 +47,7 @@ fn error_at(result: Result<Scene>) -> String {
 
 #[test]
 fn what_may_be_absent_has_its_default() {
-    let scene = read_with(SMALLEST, &[]).unwrap();
+    let scene = read_set(SMALLEST, &[]).unwrap();
     assert_eq!(scene.title, "smallest");
     assert_eq!(scene.layer.grading, 1.0);
     assert!((scene.material.shear_modulus - 1.0).abs() < 1e-15);
@@ -86,14 +86,14 @@ fn the_paper_s_scene_is_read_as_written() {
 #[test]
 fn unknowns_are_the_displacements_that_nothing_holds() {
     for (sides, unknowns) in [("free", 30), ("roller", 24), ("fixed", 18), ("periodic", 24)] {
-        let scene = read_with(SMALLEST, &[&format!("layer.sides={sides}")]).unwrap();
+        let scene = read_set(SMALLEST, &[&format!("layer.sides={sides}")]).unwrap();
         assert_eq!(scene.unknowns(), unknowns, "{sides}");
     }
 }
 
 #[test]
 fn overrides_are_applied_in_order_by_name_and_by_index() {
-    let scene = read_with(
+    let scene = read_set(
         SMALLEST,
         &[
             "title=two words",
@@ -127,13 +127,99 @@ fn a_whole_table_can_be_set() {
     assert_eq!(from_table(&table, &file).unwrap().material.shear_modulus, 3.0);
 }
 
+/// A loader of files that are only here, and what it was asked for.
+fn load(file: &Path) -> Result<String> {
+    match file.to_str() {
+        Some("dir/eva.toml") => Ok("[material]\nshear_modulus = 3\npoisson_ratio = 0.1\nshift = \"wlf\"\nc1 = 17.44\n\
+                                    c2 = 51.6\nreference_temperature = 290\ntemperature = 290\n\
+                                    arms = [{ weight = 0.5, time = 2 }]\nbulk_arms = [{ weight = 0.2, time = 1 }]\n\
+                                    poisson_rule = \"bulk_arms\"\nnotes = [\"of a test\"]\n"
+            .into()),
+        Some("dir/steel.toml") => Ok("[material]\nyoung_modulus = 2.1e11\npoisson_ratio = 0.25\n".into()),
+        _ => Err(Error::file(file, "cannot be read: it is not there")),
+    }
+}
+
+fn material_from(overrides: &[&str]) -> Result<Material> {
+    let overrides = overrides.iter().map(|text| text.to_string()).collect();
+    let source = Source { file: PathBuf::from("dir/smallest.toml"), overrides };
+    read_with(SMALLEST, &source, &load).map(|scene| scene.material)
+}
+
+#[test]
+fn a_material_comes_from_a_file_and_the_keys_beside() {
+    let material = material_from(&["material={ file = \"eva.toml\" }"]).unwrap();
+    assert_eq!((material.shear_modulus, material.poisson_ratio), (3.0, 0.1));
+    assert_eq!(material.arms, [Arm { weight: 0.5, time: 2.0 }]);
+    assert_eq!(material.bulk_arms, [Arm { weight: 0.2, time: 1.0 }]);
+    assert_eq!(material.memory, Memory::Exponential);
+    assert_eq!(material.notes[..2], ["read from eva.toml", "of a test"]);
+    let beside = "poisson_ratio = 0.3, memory = \"backward_euler\", poisson_rule = \"constant_ratio\"";
+    let arrhenius = "shift = \"arrhenius\", temperature = 280, activation_energy = 1e5";
+    let all = material_from(&[&format!("material={{ file = \"eva.toml\", {beside}, {arrhenius} }}")]).unwrap();
+    assert_eq!((all.shear_modulus, all.poisson_ratio, all.memory), (3.0, 0.3, Memory::BackwardEuler));
+    assert_eq!((all.poisson_rule, all.bulk_arms.len()), (Some(PoissonRule::ConstantRatio), 0));
+    let factor = (1e5 / 8.314_462_618_153_24 * (1.0 / 280.0 - 1.0 / 290.0f64)).exp();
+    assert!((all.arms[0].time / (2.0 * factor) - 1.0).abs() < 1e-12);
+}
+
+/// The override that names the file acts first, wherever it stands; the others change what the file says.
+#[test]
+fn overrides_of_a_material_file() {
+    let steel = material_from(&["material.file=steel.toml", "material={ file = \"eva.toml\" }"]).unwrap();
+    assert_eq!(steel.shear_modulus, 3.0);
+    let file = ["material.arms.0.time=7", "material.poisson_ratio=0.2", "material={ file = \"eva.toml\" }"];
+    let material = material_from(&file).unwrap();
+    assert_eq!((material.arms[0].time, material.poisson_ratio), (7.0, 0.2));
+    let missing = material_from(&["material={ file = \"none.toml\" }"]).unwrap_err();
+    assert_eq!(missing.exit_code(), 4);
+    let text = "dir/none.toml: cannot be read: it is not there (material.file of dir/smallest.toml)";
+    assert_eq!(missing.to_string(), text);
+}
+
+/// A table that a sweep has changed: the file is read when the table is.
+#[test]
+fn a_table_takes_a_material_file() {
+    let file = common::directory("tests/scenes/scene.toml");
+    let mut table = parse(SMALLEST, &file).unwrap();
+    let material = parse("file = \"data/eva-one-arm.toml\"", &file).unwrap();
+    set(&mut table, "material", material.into(), &file).unwrap();
+    assert_eq!(from_table(&table, &file).unwrap().material.shear_modulus, 568.498);
+    include(&mut table, &file, &open).unwrap();
+    set(&mut table, "material.arms.0.time", 2.0.into(), &file).unwrap();
+    assert_eq!(from_table(&table, &file).unwrap().material.arms[0].time, 2.0);
+}
+
+#[test]
+fn what_a_fractional_material_becomes_is_read_back() {
+    let fractional = "material={ fractional = { modulus = 814.7, order = 0.226, arms = 4 }, poisson_ratio = 0.3, \
+                      poisson_rule = \"constant_bulk_modulus\", shift = \"wlf\", c1 = 17.44, c2 = 51.6, \
+                      reference_temperature = 290, temperature = 291 }";
+    let scene = read_set(SMALLEST, &[fractional]).unwrap();
+    assert_eq!(scene.material.arms.len(), 4);
+    assert_eq!(scene.material.notes.len(), 2);
+    assert_round_trip(&scene);
+    // Steps of 0.5 s to 4 s in all, and where one step is all there is, a decade.
+    assert_eq!(scene.band().map(|band| (band.from, band.to)), Some((0.4, 4.0)));
+    // Hotter, the power law is lower by a_T^order at equal times, and so is its series.
+    let cold = read_set(SMALLEST, &[fractional, "material.temperature=290"]).unwrap().material;
+    let at = |material: &Material, t: f64| material.shear_modulus * material.shear_series().relaxation(t);
+    let factor = 10f64.powf(-17.44 / 52.6);
+    for t in [0.5, 1.0, 4.0] {
+        let ratio = at(&scene.material, t) / at(&cold, t);
+        assert!((ratio / factor.powf(0.226) - 1.0).abs() < 1e-4, "{ratio}");
+    }
+}
+
 /// Each key, set to what it cannot be, is the key of the error: none is known but not looked at.
 #[test]
 fn no_key_is_ignored() {
     let parabola = [
         "title layer.width layer.depth layer.cells layer.grading layer.sides",
         "material.shear_modulus material.young_modulus material.poisson_ratio material.arms material.poisson_rule",
-        "material.memory indenter.profile indenter.radius indenter.centre contact.penalty contact.quadrature",
+        "material.memory material.file material.fractional material.bulk_arms material.shift material.notes",
+        "material.temperature material.reference_temperature material.c1 material.c2 material.activation_energy",
+        "indenter.profile indenter.radius indenter.centre contact.penalty contact.quadrature",
         "phase phase.phase-2.name phase.phase-2.duration phase.phase-2.steps phase.phase-2.approach",
         "phase.phase-2.velocity phase.phase-2.distance phase.phase-2.tangential friction.law",
         "solver.strategy solver.tolerance output.interface_every output.bulk_at output.checkpoint_every",
@@ -141,7 +227,7 @@ fn no_key_is_ignored() {
     ]
     .join(" ");
     for key in parabola.split(' ') {
-        let at = error_at(read_with(SMALLEST, &[&format!("{key}=true")]));
+        let at = error_at(read_set(SMALLEST, &[&format!("{key}=true")]));
         // A phase whose name is wrong can only be numbered.
         assert_eq!(at.replace("phase.1.name", "phase.phase-2.name"), key);
     }
@@ -158,7 +244,7 @@ fn no_key_is_ignored() {
         ("phase.phase-1.tangential", "amplitude = true, cycles = 1", "amplitude"),
         ("phase.phase-1.tangential", "amplitude = 1, cycles = true", "cycles"),
     ] {
-        assert_eq!(error_at(read_with(SMALLEST, &[&table(key, fields)])), format!("{key}.{wrong}"));
+        assert_eq!(error_at(read_set(SMALLEST, &[&table(key, fields)])), format!("{key}.{wrong}"));
     }
 }
 
@@ -179,7 +265,7 @@ fn numbers_at_their_limits_are_accepted() {
         vec!["output.checkpoint_every=0", "output.interface_every=0"],
         vec!["friction={ law = \"coulomb_tanh\", coefficient = 0, regularisation = 1 }"],
     ] {
-        let scene = read_with(SMALLEST, &overrides).unwrap_or_else(|error| panic!("{overrides:?}: {error}"));
+        let scene = read_set(SMALLEST, &overrides).unwrap_or_else(|error| panic!("{overrides:?}: {error}"));
         for moment in &scene.output.bulk_at {
             assert!(!matches!(moment, When::Time(time) if *time > scene.duration()));
         }
@@ -319,14 +405,14 @@ fn damaged_files_are_errors_of_one_line() {
             let at = random.below(letters.len() as u64) as usize;
             letters[at] = random.of(&damage).to_owned();
         }
-        if let Err(error) = read_with(&letters.concat(), &[]) {
+        if let Err(error) = read_set(&letters.concat(), &[]) {
             let message = error.to_string();
             assert!(!message.chars().any(char::is_control), "{message:?}");
             assert_eq!(error.exit_code(), 2);
         }
     }
     for nested in ["[".repeat(100_000), format!("a = {}", "[".repeat(100_000)), "a.".repeat(100_000) + "a = 1"] {
-        assert!(read_with(&nested, &[]).is_err());
-        assert!(read_with(SMALLEST, &[&nested]).is_err());
+        assert!(read_set(&nested, &[]).is_err());
+        assert!(read_set(SMALLEST, &[&nested]).is_err());
     }
 }

@@ -48,8 +48,11 @@ fn expand(table: &mut Table, path: &str, scene: &Path, load: Load) -> Result<()>
         }
     };
     if let Some(beside) = NOT_BESIDE.iter().find(|key| table.contains_key(**key)) {
-        let reason = format!("comes from material.file ({name:?}); remove one of the two");
-        return Err(Error::scene(scene, format!("{path}.{beside}"), reason));
+        let reason = format!(
+            "cannot stand beside {beside}, which the file gives; remove one of them, or replace the whole table: \
+             material = {{ file = {name:?} }}"
+        );
+        return Err(Error::scene(scene, key, reason));
     }
     let found = scene.parent().unwrap_or(Path::new("")).join(&name);
     let text = load(&found).map_err(|error| match error {
@@ -81,8 +84,8 @@ fn expand(table: &mut Table, path: &str, scene: &Path, load: Load) -> Result<()>
 fn whole(text: &str, file: &Path) -> Result<Table> {
     let table = read::parse(text, file)?;
     let root = Section::root(file, &table);
-    root.only(&["material"])?;
     let section = root.section("material")?;
+    root.only(&["material"])?;
     if section.has("file") {
         return Err(section.error("file", "a material file cannot take another one; write its table in full"));
     }

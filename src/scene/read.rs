@@ -30,13 +30,11 @@ pub fn read_with(text: &str, source: &Source, load: Load) -> Result<Scene> {
     let Source { file, overrides: typed } = source;
     let mut table = parse(text, file)?;
     let (files, others): (Vec<_>, Vec<_>) = typed.iter().cloned().partition(|typed| overrides::names_material(typed));
-    let mut scene = || {
-        overrides::apply(&mut table, &files, file)?;
-        include::include(&mut table, file, load)?;
-        overrides::apply(&mut table, &others, file)?;
-        from_table(&table, file)
-    };
-    scene().map_err(|error| overrides::blame(error, typed))
+    let blame = |error| overrides::blame(error, typed);
+    overrides::apply(&mut table, &files, file)?;
+    include::include(&mut table, file, load).map_err(blame)?;
+    overrides::apply(&mut table, &others, file)?;
+    from_table(&table, file).map_err(blame)
 }
 
 /// The TOML of a file, not yet looked into.
