@@ -5,6 +5,7 @@ use mpi::traits::{Communicator, Root};
 
 use crate::bulk::{Arms, Bulk, Part, Series};
 use crate::element::mpjr::Quadrature;
+use crate::element::quad4;
 use crate::error::Result;
 use crate::friction::Friction;
 use crate::interface::{Interface, Laws};
@@ -17,7 +18,8 @@ use crate::rheology::Memory;
 use crate::rheology::prony::{Prony, common_times};
 use crate::scene::{self, PoissonRule, Scene, When};
 use crate::solve::{
-    Body, Compliance, Condensed, Interior, LARGE_FACE, Limits, Moduli, Monolithic, Parts, Relaxation, TransientProblem,
+    Backing, Body, Compliance, Condensed, Following, Interior, LARGE_FACE, Limits, Moduli, Monolithic, Relaxation,
+    Remembering, Source, TransientProblem,
 };
 
 /// A scene made ready to run.
@@ -45,13 +47,32 @@ pub fn build(comm: &SimpleCommunicator, scene: &Scene) -> Result<Problem> {
         friction: scene.friction.as_ref().map(friction),
     };
     let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
-    if is_condensed(scene) { condensed(comm, scene, mesh, interface) } else { monolithic(comm, scene, mesh, interface) }
+    match form(scene) {
+        Form::Monolithic => monolithic(comm, scene, mesh, interface),
+        Form::Following => following(comm, scene, mesh, interface),
+        Form::Remembering => remembering(comm, scene, mesh, interface),
+    }
 }
 
-/// Whether the scene is solved on its contact face alone: where the interior follows the face for all time.
-pub fn is_condensed(scene: &Scene) -> bool {
+/// How a scene is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// All unknowns.
+    Monolithic,
+    /// On the face; the interior follows it for all time.
+    Following,
+    /// On the face; the interior has a memory of its own.
+    Remembering,
+}
+
+/// How `scene` is solved: on its contact face unless it says otherwise.
+pub fn form(scene: &Scene) -> Form {
     let follows = scene.material.is_elastic() || scene.material.poisson_rule == Some(PoissonRule::ConstantRatio);
-    follows && scene.solver.strategy != scene::Strategy::Monolithic
+    match scene.solver.strategy {
+        scene::Strategy::Monolithic => Form::Monolithic,
+        scene::Strategy::Auto | scene::Strategy::Condensed if follows => Form::Following,
+        scene::Strategy::Auto | scene::Strategy::Condensed => Form::Remembering,
+    }
 }
 
 fn monolithic(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
@@ -69,11 +90,9 @@ fn monolithic(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: I
     Ok(Problem { strategy, tangent, u, phases: phases(scene), settings: settings(linear), mesh })
 }
 
-fn condensed(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
+fn following(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
     let moduli = moduli(&scene.material);
-    let held: Vec<[bool; 2]> = mesh.face.unknown.iter().map(|&unknown| mesh.held[unknown as usize]).collect();
-    let here = if comm.rank() == 0 { 2 * held.len() } else { 0 };
-    let u = Vector::new(comm, here)?;
+    let u = face_vector(comm, &mesh)?;
     let mine = if comm.rank() == 0 { compliance(scene, &mesh, moduli).map(Some) } else { Ok(None) };
     let compliance = agree(comm, mine)?;
     let mut softness = compliance.as_ref().map_or(0.0, Compliance::largest);
@@ -84,19 +103,62 @@ fn condensed(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: In
         None => None,
     };
     let interior = Interior::new(comm, mesh.clone(), moduli);
-    let parts = Parts { interface, compliance, softness, relaxation, interior };
+    let backing = Following { compliance, softness, relaxation, interior, secant: 1.0 };
+    condensed(comm, scene, mesh, u, (interface, backing))
+}
+
+fn remembering(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
+    let moduli = moduli(&scene.material);
+    let whole = if comm.rank() == 0 { whole_body(scene, &mesh, moduli).map(Some) } else { Ok(None) };
+    let source = match scene.layer.sides {
+        scene::Sides::Periodic => {
+            Source::Periodic { cells: column(scene, &mesh), columns: scene.layer.cells[0], moduli }
+        }
+        _ => Source::Schur,
+    };
+    let backing = Remembering::new(comm, agree(comm, whole)?, source)?;
+    let u = face_vector(comm, &mesh)?;
+    condensed(comm, scene, mesh, u, (interface, backing))
+}
+
+fn condensed<B: Backing + 'static>(
+    comm: &SimpleCommunicator,
+    scene: &Scene,
+    mesh: Mesh,
+    u: Vector,
+    (interface, backing): (Interface, B),
+) -> Result<Problem> {
+    let held: Vec<[bool; 2]> = mesh.face.unknown.iter().map(|&unknown| mesh.held[unknown as usize]).collect();
     let linear = if 2 * held.len() > LARGE_FACE { Linear::OwnIterative } else { Linear::Own };
-    let tangent = Matrix::shell(comm, here)?;
-    let strategy = Box::new(Condensed::new(parts, &u, &held, scene.solver.tolerance)?);
+    let tangent = Matrix::shell(comm, u.local_len())?;
+    let strategy = Box::new(Condensed::new(interface, backing, &u, &held, scene.solver.tolerance)?);
     Ok(Problem { strategy, tangent, u, phases: phases(scene), settings: settings(linear), mesh })
+}
+
+/// x, z of each face node, on rank 0.
+fn face_vector(comm: &SimpleCommunicator, mesh: &Mesh) -> Result<Vector> {
+    Vector::new(comm, if comm.rank() == 0 { 2 * mesh.face.unknown.len() } else { 0 })
 }
 
 /// The compliance of the face, by this rank alone.
 fn compliance(scene: &Scene, mesh: &Mesh, moduli: Moduli) -> Result<Compliance> {
     if scene.layer.sides == scene::Sides::Periodic {
-        return Ok(Compliance::of_periodic_layer(&layer(&scene.layer), mesh, moduli));
+        let cells: Vec<_> = column(scene, mesh).iter().map(|split| moduli.stiffness(split)).collect();
+        return Ok(Compliance::of_periodic_columns(&cells, scene.layer.cells[0]));
     }
     Compliance::by_schur_complement(&Body::new(SimpleCommunicator::self_comm(), mesh.clone(), moduli)?, moduli)
+}
+
+/// The whole body with its memory, on this rank alone.
+fn whole_body(scene: &Scene, mesh: &Mesh, moduli: Moduli) -> Result<(Bulk, Body)> {
+    let body = Body::new(SimpleCommunicator::self_comm(), mesh.clone(), moduli)?;
+    let bulk = bulk(scene, &body, moduli, &body.vector()?)?;
+    Ok((bulk, body))
+}
+
+/// The cells of one column of the layer, from the top down.
+fn column(scene: &Scene, mesh: &Mesh) -> Vec<quad4::Split> {
+    (0..scene.layer.cells[1]).map(|cell| quad4::stiffness(&mesh.corners(cell))).collect()
 }
 
 fn settings(linear: Linear) -> Settings {

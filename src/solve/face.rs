@@ -65,10 +65,14 @@ impl ContactFace {
     pub fn try_residual(&mut self, step: Step, u: &Vector, rate: &Vector) -> Result<()> {
         self.try_state(step, u, rate)?;
         self.interface.residual(self.trial.placement, &self.trial.surface, &mut self.residual)?;
+        self.mask_residual();
+        Ok(())
+    }
+
+    fn mask_residual(&mut self) {
         for (force, free) in self.residual.iter_mut().zip(&self.free) {
             force.component_mul_assign(free);
         }
-        Ok(())
     }
 
     /// Makes `tangent` hold at a trial state.
@@ -134,6 +138,14 @@ impl ContactFace {
         }
         self.accepted.placement = placement;
         self.accepted.scale = self.trial.scale;
+        Ok(())
+    }
+
+    /// Makes `residual` hold at the accepted state.
+    pub fn accepted_residual(&mut self) -> Result<()> {
+        let State { surface, placement, .. } = &self.accepted;
+        self.interface.residual(*placement, surface, &mut self.residual)?;
+        self.mask_residual();
         Ok(())
     }
 

@@ -1,11 +1,9 @@
 //! Solving the transient problem: what a strategy must offer, and the driver that steps it.
 
 mod body;
-mod compliance;
 mod condensed;
 mod driver;
 mod face;
-mod interior;
 mod monolithic;
 
 use crate::error::{Error, Result};
@@ -14,10 +12,8 @@ use crate::loading::{Phase, Placement};
 use crate::petsc::{Matrix, Step, Vector, Verdict};
 
 pub use body::{Body, Moduli};
-pub use compliance::Compliance;
-pub use condensed::{Condensed, LARGE_FACE, Parts, Relaxation};
+pub use condensed::{Backing, Compliance, Condensed, Following, Interior, LARGE_FACE, Relaxation, Remembering, Source};
 pub use driver::{Counts, Driver, Limits};
-pub use interior::Interior;
 pub use monolithic::Monolithic;
 
 /// A discretised contact problem in a form that TS and SNES can step.

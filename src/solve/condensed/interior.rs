@@ -3,8 +3,8 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::BulkFields;
-use super::body::{Body, Moduli};
+use super::super::BulkFields;
+use super::super::body::{Body, Moduli};
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::petsc::{Cholesky, Matrix, Vector};

@@ -1,16 +1,15 @@
 //! The elastic compliance of the contact face: what the condensed strategy needs of the body.
 //!
 //! u = C f for forces f on the face alone, at the instantaneous moduli: C is the inverse of the Schur complement of
-//! the stiffness onto the face. With a constant Poisson ratio it serves every step length and every Prony series.
+//! the stiffness onto the face.
 
 use std::f64::consts::PI;
 
 use nalgebra::{Complex, Matrix2};
 
-use super::body::{Body, Moduli};
+use super::super::body::{Body, Moduli};
 use crate::element::quad4;
 use crate::error::Result;
-use crate::mesh::{Layer, Mesh};
 use crate::petsc::Cholesky;
 
 /// C, dense: (x, z of each face node)^2, m per N/m, column-major; zero rows and columns where a component is held.
@@ -23,39 +22,48 @@ pub struct Compliance {
 impl Compliance {
     /// By the Schur complement of a body that this rank holds whole.
     pub fn by_schur_complement(body: &Body, moduli: Moduli) -> Result<Self> {
-        let (mesh, numbering) = (body.mesh(), body.numbering());
-        let order = 2 * mesh.face.unknown.len();
-        let free: Vec<usize> = (0..order).filter(|&i| !mesh.held[mesh.face.unknown[i / 2] as usize][i % 2]).collect();
-        let row = |&i: &usize| 2 * numbering.global[mesh.face.unknown[i / 2] as usize] + (i % 2) as i32;
-        let kept: Vec<i32> = free.iter().map(row).collect();
+        let kept: Vec<i32> = Self::free_rows(body).into_iter().map(|(_, row)| row).collect();
         let mut stiffness = body.stiffness(moduli, moduli.shear)?;
         stiffness.declare_positive_definite()?;
-        let inverse = Cholesky::inverse_schur(&stiffness, &kept)?;
+        let (_, inverse) = Cholesky::with_inverse_schur(&stiffness, &kept)?;
+        Ok(Self::from_free(body, &inverse))
+    }
+
+    /// The face's components that are not held: their place on the face and their row in the body.
+    pub fn free_rows(body: &Body) -> Vec<(usize, i32)> {
+        let (mesh, numbering) = (body.mesh(), body.numbering());
+        let components =
+            mesh.face.unknown.iter().enumerate().flat_map(|(i, &unknown)| [(i, unknown, 0), (i, unknown, 1)]);
+        components
+            .filter(|&(_, unknown, component)| !mesh.held[unknown as usize][component])
+            .map(|(i, unknown, component)| {
+                (2 * i + component, 2 * numbering.global[unknown as usize] + component as i32)
+            })
+            .collect()
+    }
+
+    /// From the compliance of the components that are not held.
+    pub fn from_free(body: &Body, inverse: &[f64]) -> Self {
+        let places: Vec<usize> = Self::free_rows(body).into_iter().map(|(place, _)| place).collect();
+        let order = 2 * body.mesh().face.unknown.len();
         let mut values = vec![0.0; order * order];
-        for (column, source) in free.iter().zip(inverse.chunks_exact(free.len())) {
-            for (row, value) in free.iter().zip(source) {
+        for (column, source) in places.iter().zip(inverse.chunks_exact(places.len())) {
+            for (row, value) in places.iter().zip(source) {
                 values[column * order + row] = *value;
             }
         }
-        Ok(Self { order, values })
+        Self { order, values }
     }
 
     /// For a periodic layer, whose stiffness is block-circulant along x: one block-tridiagonal elimination through
-    /// the depth per wavenumber, and no sparse factor at all.
+    /// the depth per wavenumber, and no sparse factor at all. `cells` are those of one column, from the top down.
     ///
     /// At wavenumber k the layer is a column of node rows coupled by Hermitian 2 x 2 blocks; elimination from the
     /// clamped row upward leaves S(k) at the face, and C(x) is the inverse transform of S(k)^-1.
-    pub fn of_periodic_layer(layer: &Layer, mesh: &Mesh, moduli: Moduli) -> Self {
-        let [columns, rows] = layer.cells;
-        let cells: Vec<quad4::Stiffness> = (0..rows)
-            .map(|cell| {
-                let split = quad4::stiffness(&mesh.corners(cell));
-                split.deviatoric * moduli.shear + split.volumetric * moduli.bulk
-            })
-            .collect();
+    pub fn of_periodic_columns(cells: &[quad4::Stiffness], columns: usize) -> Self {
         // C(-k) is the conjugate of C(k): half of the wavenumbers suffice.
         let spectrum: Vec<Matrix2<Complex<f64>>> =
-            (0..=columns / 2).map(|k| face_compliance(&cells, 2.0 * PI * k as f64 / columns as f64)).collect();
+            (0..=columns / 2).map(|k| face_compliance(cells, 2.0 * PI * k as f64 / columns as f64)).collect();
         let mut values = vec![0.0; 4 * columns * columns];
         for offset in 0..columns {
             let block = at_offset(&spectrum, offset, columns);
