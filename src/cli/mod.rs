@@ -2,6 +2,7 @@
 
 mod check;
 mod fit;
+mod material;
 mod profile;
 mod progress;
 mod record;

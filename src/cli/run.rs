@@ -56,10 +56,9 @@ fn solve(session: &Session, world: &SimpleCommunicator, arguments: &RunArguments
     let started = SystemTime::now();
     let clock = Instant::now();
     let file = &arguments.scene;
-    let text = share_text(world, || {
-        std::fs::read_to_string(file).map_err(|error| Error::file(file, format!("cannot be read: {error}")))
-    })?;
-    let scene = scene::read(&text, &Source { file: file.clone(), overrides: arguments.set.clone() })?;
+    let open = |file: &Path| share_text(world, || scene::open(file));
+    let source = Source { file: file.clone(), overrides: arguments.set.clone() };
+    let scene = scene::read_with(&open(file)?, &source, &open)?;
     let out = arguments.out.clone().unwrap_or_else(|| default_output(file));
 
     let problem = composition::build(world, &scene, file)?;

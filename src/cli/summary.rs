@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::time::Duration;
 
+use super::material;
 use crate::composition::{self, Form};
 use crate::output::{HistoryRow, Status};
 use crate::petsc;
@@ -14,6 +15,10 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
     let (mut yes, mut no) = (Vec::new(), Vec::new());
     let arms = scene.material.arms.len();
     match (arms, scene.material.poisson_rule) {
+        (_, Some(PoissonRule::BulkArms)) => {
+            let bulk = scene.material.bulk_arms.len();
+            yes.push(format!("viscoelastic memory: {arms} arm(s) of the shear modulus, {bulk} of the bulk modulus"));
+        }
         (0, _) => no.push("memory (linear elastic)".to_owned()),
         (_, Some(PoissonRule::ConstantBulkModulus)) => {
             yes.push(format!("viscoelastic memory: {arms} arm(s) of the shear modulus, constant bulk modulus"));
@@ -59,6 +64,7 @@ pub fn plan(scene: &Scene) -> String {
     // Writing to a string cannot fail.
     let _ = writeln!(text, "modelled:      {}", yes.join("\n               "));
     let _ = writeln!(text, "not modelled:  {}", no.join("\n               "));
+    text += &material::lines(scene);
     let _ = writeln!(text, "mesh:          {nx} x {nz} cells, {sides} sides, {} unknowns", scene.unknowns());
     let _ = writeln!(
         text,
@@ -111,6 +117,7 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     let _ = writeln!(text, "{:<15}{} at t = {:.6} s", "status:", status.as_str(), last.time);
     let _ = writeln!(text, "{:<15}{}", "modelled:", yes.join("\n               "));
     let _ = writeln!(text, "{:<15}{}", "not modelled:", no.join("\n               "));
+    text += &material::lines(scene);
     let _ = writeln!(
         text,
         "{:<15}N = {:.6e}  Q = {:.6e}  hysteretic = {:.6e} N/m",
