@@ -3,6 +3,8 @@
 //! Every rank holds the whole face (it is one dimension smaller than the body) and evaluates all of it from the same
 //! numbers, so every rank sees the same error and the same totals; each rank assembles only the rows that it owns.
 
+mod oscillation;
+
 use nalgebra::{Matrix2, Vector2};
 
 use crate::element::mpjr::{self, Motion, Quadrature, Traction};
@@ -80,6 +82,8 @@ pub struct Totals {
     pub stick_fraction: f64,
     /// m
     pub max_penetration: f64,
+    /// How much the tractions oscillate from node to node; 1 = nothing but a checkerboard.
+    pub traction_oscillation: f64,
 }
 
 /// Fields at the face's nodes.
@@ -194,9 +198,11 @@ impl Interface {
         self.place(placement)?;
         let mut totals = Totals::default();
         let (mut length, mut contact, mut stick) = (0.0, 0.0, 0.0);
+        let mut tractions = Vec::with_capacity(self.face.x.len());
         for (point, elevation) in self.points.iter().zip(&self.elevations) {
             let motion = motion(point, elevation, placement, surface);
             let traction = mpjr::traction(motion, self.laws.penalty, self.laws.friction.as_ref());
+            tractions.push(Vector2::new(traction.shear, traction.pressure));
             totals.normal_force += point.weight * traction.pressure;
             totals.tangential_force += point.weight * traction.shear;
             totals.hysteretic_force += point.weight * traction.pressure * elevation.slope;
@@ -211,6 +217,11 @@ impl Interface {
         }
         totals.contact_fraction = contact / length;
         totals.stick_fraction = if contact > 0.0 { stick / contact } else { 0.0 };
+        if !self.nodal {
+            let Fields { pressure, shear, .. } = self.fields(placement, surface)?;
+            tractions = shear.into_iter().zip(pressure).map(|(q, p)| Vector2::new(q, p)).collect();
+        }
+        totals.traction_oscillation = oscillation::oscillation(&self.face.edges, &tractions);
         Ok(totals)
     }
 

@@ -16,4 +16,6 @@ pub mod petsc;
 pub mod profile;
 pub mod rheology;
 pub mod scene;
+pub mod solution;
 pub mod solve;
+pub mod verify;

@@ -5,10 +5,13 @@ mod progress;
 mod record;
 mod run;
 mod summary;
+mod verify;
 
 use clap::{Parser, Subcommand};
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// Transient viscoelastic contact with friction, by interface finite elements with embedded profiles (MPJR).
 ///
@@ -26,10 +29,12 @@ enum Command {
     Run(run::RunArguments),
     /// Read and check a scene, and say what a run would do; solves nothing
     Check(check::CheckArguments),
+    /// Solve scenes with a known answer and compare; the exit code is 1 if any differs by more than its tolerance
+    Verify(verify::VerifyArguments),
 }
 
 /// Reads the command line, does what it says, and returns the exit code: 0 done, 2 scene or command line wrong,
-/// 3 no convergence, 4 a file could not be read or written, 1 anything else.
+/// 3 no convergence, 4 a file could not be read or written, 1 anything else, such as a failed `verify`.
 pub fn main() -> i32 {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -44,6 +49,7 @@ pub fn main() -> i32 {
     let outcome: Result<()> = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
+        Command::Verify(arguments) => verify::run(&arguments),
     };
     match outcome {
         Ok(()) => 0,
@@ -53,6 +59,16 @@ pub fn main() -> i32 {
             }
             error.exit_code()
         }
+    }
+}
+
+/// Ends all ranks where one has met an error inside a library, for which the others may wait.
+fn abort_if_alone(world: &SimpleCommunicator, outcome: &Result<()>) {
+    if let Err(error @ Error::Internal(_)) = outcome
+        && world.size() > 1
+    {
+        eprintln!("mpjr: rank {}: {error}", world.rank());
+        world.abort(error.exit_code());
     }
 }
 

@@ -1,0 +1,129 @@
+//! Partial slip: Cattaneo and Mindlin, and the cycles of Jager and Ciavarella.
+//!
+//! Both neglect that pressure displaces the face tangentially, which it does in proportion to Dundurs'
+//! beta = (1-2nu)/(2(1-nu)). Two things make the scenes uncoupled: nu = 0.499 (beta = 0.002), and pressing so slowly
+//! against the regularisation that the contact is then frictionless, as the theories suppose. What is left is f beta of
+//! the pressure and beta of the shear. The tangential displacement, on the other hand, is so fast that sticking nodes
+//! creep by little of it.
+
+use std::f64::consts::PI;
+
+use super::half_space::{OSCILLATION, deep, hertz_among_images, largest, modulus};
+use super::setting::{Indenter, Motion, Phase, Setting};
+use super::{Case, Row};
+use crate::oracle::line_contact::Oscillation;
+use crate::oracle::steady::Load;
+use crate::solution::Solution;
+
+const POISSON: f64 = 0.499;
+const FRICTION: f64 = 0.3;
+
+pub fn cases(quick: bool) -> Vec<Case> {
+    if quick { vec![mindlin(256)] } else { vec![mindlin(512), cycle(128)] }
+}
+
+/// Presses frictionless: slip of some 1e-4 m in 1e8 s is nothing to a regularisation of 1e-6 m/s.
+fn press(approach: f64) -> Phase {
+    Phase::press(1e8, 4, approach)
+}
+
+/// Normal force, then a growing tangential displacement: the tractions point by point, and the zone that sticks.
+fn mindlin(n: usize) -> Case {
+    let approach = 4e-3;
+    let sway = Phase { duration: 1.0, steps: 8, approach, motion: Motion::Velocity(4e-4) };
+    let setting = Setting {
+        friction: Some([FRICTION, 1e-7]),
+        ..deep(n, POISSON, Indenter::Parabola(1.0), vec![press(approach), sway])
+    };
+    let settings = vec![setting.clone()];
+    let compare = move |solutions: &[Solution]| {
+        let (solution, end) = (&solutions[0], &solutions[0].ends[1]);
+        let row = solution.last();
+        let exact = hertz_among_images(&setting, row.normal_force);
+        let (a, h, force) = (exact.half_width(), setting.spacing(), row.tangential_force);
+        let (c, peak) = (a * exact.stick_ratio(force, FRICTION), exact.peak());
+        let before = solution.end_of(0);
+        let p = largest(solution, &end.pressure, |x| exact.pressure(x), (0.5, 0.9 * a)) / peak;
+        let q = largest(solution, &end.shear, |x| exact.shear(force, FRICTION, x), (0.5, 0.8 * c)) / (FRICTION * peak);
+        let far = |x: f64| exact.shear(force, FRICTION, x);
+        let near = largest(solution, &end.shear, far, (0.5, 0.9 * a)) / (FRICTION * peak);
+        let stuck = row.stick_fraction * row.contact_fraction;
+        let beta = (1.0 - 2.0 * POISSON) / (2.0 * (1.0 - POISSON));
+        let placed = 0.95 * h / a + beta;
+        Ok(vec![
+            Row::new("Q_x/(f N_z) after pressing", [before.tangential_force / before.normal_force, 0.0], 1e-6, "solver"),
+            Row::new("contact width 2a, m", [row.contact_fraction, 2.0 * a], 2.0 * h, "one node at each edge"),
+            Row::new("largest error of p(x), |x| < 0.9 a, of p0", [p, 0.0], placed, "edge to half a spacing; beta"),
+            Row::new("width of the stick zone 2c, m", [stuck, 2.0 * c], 4.0 * h, "two nodes at each edge"),
+            Row::new("largest error of q(x), |x| < 0.8 c, of f p0", [q, 0.0], placed, "edge to half a spacing; beta"),
+            Row::new("largest error of q(x), |x| < 0.9 a, of f p0", [near, 0.0], (2.0 * h / c).sqrt(), "sqrt cusp at c, placed to a spacing"),
+            Row::new(OSCILLATION, [row.traction_oscillation, 0.0], 2.0 * h / c, "edges: 2 h/c; a checkerboard: 1"),
+        ])
+    };
+    Case {
+        name: format!("Cattaneo-Mindlin, nu = {POISSON}, {n} cells"),
+        source: "Johnson, Contact Mechanics, 7.2(d)",
+        settings,
+        compare: Box::new(compare),
+    }
+}
+
+/// A wave at a held approach D, swayed by a sine up to full sliding and back and forth: at each step Q against the
+/// superposition Q = f [P(D) - P(D - ...)] of Jager and Ciavarella, P by the oracle's layer.
+///
+/// The theorem takes the tangential compliance to equal the normal one, which holds at every k > 0 on a deep layer but
+/// not for the mean, where C_xx = H/G and C_zz = H (1-2nu)/(2G (1-nu)): so the sway is lessened by the mean's own
+/// (C_xx - C_zz) Q/L first.
+fn cycle(n: usize) -> Case {
+    let approach = 8e-4;
+    let sine = |amplitude| Phase { duration: 100.0, steps: 100, approach, motion: Motion::Sine(amplitude, 1.25) };
+    let mut setting = deep(n, POISSON, Indenter::Wave(5e-4), vec![press(approach)]);
+    setting.friction = Some([FRICTION, 1e-8]);
+    let (layer, moduli) = (setting.layer(), setting.moduli());
+    let mean = layer.compliance(0.0, moduli);
+    let excess = mean.xx.re - mean.zz.re;
+    // Half of what makes all slip, beside the mean's own sway.
+    let wave = setting.wave();
+    let rough = PI * modulus(&setting) * wave.amplitude * 0.5;
+    setting.phases.push(sine(0.5 * FRICTION * (approach + excess * rough)));
+    let settings = vec![setting.clone()];
+    let compare = move |solutions: &[Solution]| {
+        let mut frictionless = setting.steady(0.0);
+        frictionless.friction = 0.0;
+        let force = |d: f64| {
+            let state = frictionless.solve(n, |x| wave.at(x), Load::Approach(d));
+            state.map_or(f64::NAN, |state| state.normal)
+        };
+        let exact_normal = force(approach);
+        let normal = solutions[0].end_of(0).normal_force;
+        let mut contact = Oscillation::new(force, approach, FRICTION);
+        let mut worst = (0.0, 0.0, 0.0);
+        let mut turns = Vec::new();
+        for row in solutions[0].history.iter().filter(|row| row.phase == 1) {
+            let q = row.tangential_force;
+            let exact = contact.advance(row.sliding - excess * q);
+            if (q - exact).abs() > worst.0 {
+                worst = ((q - exact).abs(), q, exact);
+            }
+            turns.push((q, exact));
+        }
+        let limit = FRICTION * exact_normal;
+        let tolerance = 0.02 * limit;
+        let at = |share: f64| turns[((turns.len() as f64 * share) as usize).min(turns.len()) - 1];
+        let (first, back, forth) = (at(0.2), at(0.6), at(1.0));
+        let why = "2 % of f P: mesh, creep, beta";
+        Ok(vec![
+            Row::relative("N_z, N/m", [normal, exact_normal], 0.01, "1 %: mesh, nu near 1/2"),
+            Row::new("Q_x at the first turn, N/m", [first.0, first.1], tolerance, why),
+            Row::new("Q_x at the second turn, N/m", [back.0, back.1], tolerance, why),
+            Row::new("Q_x at the third turn, N/m", [forth.0, forth.1], tolerance, why),
+            Row::new("Q_x where it differs most, N/m", [worst.1, worst.2], tolerance, why),
+        ])
+    };
+    Case {
+        name: format!("Jager-Ciavarella cycle, nu = {POISSON}, {n} cells"),
+        source: "Jager 1993, Ciavarella 1998",
+        settings,
+        compare: Box::new(compare),
+    }
+}
