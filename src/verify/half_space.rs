@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::setting::{Indenter, Phase, Setting, elastic};
-use super::{Case, Row};
+use super::{Case, MESH, Row, resolution};
 use crate::oracle::line_contact::{Hertz, Westergaard, plane_strain_modulus};
 use crate::oracle::steady::Load;
 use crate::solution::Solution;
@@ -44,11 +44,6 @@ pub fn largest(solution: &Solution, field: &[f64], exact: impl Fn(f64) -> f64, (
 }
 
 const EDGE: &str = "one node at each edge";
-
-/// What an edge of a contact, of half-width a, that is placed to half a spacing h does to a pressure p0 sqrt(1 -
-/// x^2/a^2), away from the edges (|x| < 0.9 a: there the slope in a is 0.81/sqrt(1 - 0.81) = 1.9 p0/a).
-const PLACED: &str = "edge to half a spacing, |x| < 0.9 a: 0.95 h/a";
-
 /// A wave on a layer two wavelengths deep; the depth is felt by e^{-2kH} = 1e-11 at most, but by the mean, which is
 /// why the pressures are compared at the mean pressure found.
 fn westergaard(n: usize, approach: f64) -> Case {
@@ -64,13 +59,12 @@ fn westergaard(n: usize, approach: f64) -> Case {
         let error = largest(solution, &end.pressure, |x| exact.pressure(mean, x), (0.0, 0.9 * a)) / peak;
         let summit = end.pressure[0];
         let layer = setting.steady(0.0).solve(512, |x| wave.at(x), Load::Approach(approach))?;
-        let resolved = (0.5 * PI * h / a).powi(2);
-        let why = "mesh: (pi h/2a)^2";
+        let resolution = resolution(h, 2.0 * a);
         Ok(vec![
-            Row::relative("N_z at this approach (layer), N/m", [mean, layer.normal], resolved, why),
+            Row::resolved("N_z at this approach (layer), N/m", [mean, layer.normal], resolution),
             Row::new("contact width, m", [solution.last().contact_fraction, 2.0 * a], 2.0 * h, EDGE),
-            Row::relative("p under the summit at this N_z, Pa", [summit, peak], 2.0 * resolved, "mesh: 2 (pi h/2a)^2"),
-            Row::new("largest error of p(x), |x| < 0.9 a, of its peak", [error, 0.0], 0.95 * h / a, PLACED),
+            Row::resolved("p under the summit at this N_z, Pa", [summit, peak], resolution),
+            Row::new("largest error of p(x), |x| < 0.9 a, of its peak", [error, 0.0], resolution, MESH),
             Row::new(OSCILLATION, [solution.last().traction_oscillation, 0.0], h / a, "edges: h/a; a checkerboard: 1"),
         ])
     };
@@ -85,13 +79,13 @@ fn westergaard(n: usize, approach: f64) -> Case {
 /// See [`crate::interface`].
 pub const OSCILLATION: &str = "node-to-node oscillation of the tractions";
 
-/// Hertz among the periodic images of his cylinder: the displacement -(2P/(pi E*)) ln|x - nL| of the others has at the
-/// contact the curvature (2P/(pi E*)) pi^2/(3 L^2), which is taken from the cylinder's. What is left is of order
-/// (a/L)^4.
+/// Hertz among the periodic images of his cylinder: the indentation -(2P/(pi E*)) ln|x - nL| by the others has at the
+/// contact the curvature (2P/(pi E*)) pi^2/(3 L^2), upward like that of the cylinder, and adds to it. What is left is
+/// of order (a/L)^4.
 pub fn hertz_among_images(setting: &Setting, force: f64) -> Hertz {
     let (modulus, width) = (modulus(setting), setting.width);
     let radius = if let Indenter::Parabola(radius) = setting.indenter { radius } else { f64::INFINITY };
-    let curvature = 1.0 / radius - 2.0 * PI * force / (3.0 * modulus * width * width);
+    let curvature = 1.0 / radius + 2.0 * PI * force / (3.0 * modulus * width * width);
     Hertz { modulus, radius: 1.0 / curvature, force }
 }
 
@@ -105,11 +99,11 @@ fn hertz(n: usize) -> Case {
         let (a, h) = (exact.half_width(), setting.spacing());
         let error = largest(solution, &end.pressure, |x| exact.pressure(x), (0.5, 0.9 * a)) / exact.peak();
         let peak = end.pressure[n / 2];
-        let resolved = 2.0 * (0.5 * PI * h / a).powi(2) + a.powi(4);
+        let resolution = resolution(h, 2.0 * a);
         Ok(vec![
             Row::new("contact width 2a, m", [solution.last().contact_fraction, 2.0 * a], 2.0 * h, EDGE),
-            Row::relative("peak pressure p0, Pa", [peak, exact.peak()], resolved, "mesh: 2 (pi h/2a)^2; images: (a/L)^4"),
-            Row::new("largest error of p(x), |x| < 0.9 a, of p0", [error, 0.0], 0.95 * h / a, PLACED),
+            Row::resolved("peak pressure p0, Pa", [peak, exact.peak()], resolution),
+            Row::new("largest error of p(x), |x| < 0.9 a, of p0", [error, 0.0], resolution, MESH),
             Row::new(OSCILLATION, [solution.last().traction_oscillation, 0.0], h / a, "edges: h/a; a checkerboard: 1"),
         ])
     };

@@ -117,7 +117,12 @@ fn mirror(n: usize) -> Case {
             Row::new("odd part of p after pressing, of its peak", [odd, 0.0], 1e-7, SMOOTH),
             Row::new("even part of q after pressing, of the peak", [even, 0.0], 1e-7, SMOOTH),
             Row::new("p slid right less mirrored p slid left", [slid, 0.0], 1e-7, SMOOTH),
-            Row::relative("Q_x slid right, and -Q_x slid left, N/m", [r.tangential_force, -l.tangential_force], 1e-7, SMOOTH),
+            Row::relative(
+                "Q_x slid right, and -Q_x slid left, N/m",
+                [r.tangential_force, -l.tangential_force],
+                1e-7,
+                SMOOTH,
+            ),
             Row::relative("hysteretic force, likewise, N/m", [r.hysteretic_force, -l.hysteretic_force], 1e-5, SMOOTH),
         ])
     };

@@ -1,7 +1,7 @@
 //! Transient pressing and sliding over one relaxing arm: VERIFY's table.
 
 use super::setting::{Phase, Setting, one_arm};
-use super::{Case, Row};
+use super::{Case, Row, resolution};
 use crate::oracle::PoissonRule;
 use crate::oracle::transient::Update;
 use crate::solution::Solution;
@@ -26,8 +26,7 @@ pub fn cases(quick: bool) -> Vec<Case> {
 fn case(n: usize, (penalty, update, finer): (f64, Update, usize), poisson: f64) -> Case {
     let phases = vec![Phase::press(10.0, 50 * finer, 1e-3), Phase::slide(0.1, 1.0, 100 * finer, 1e-3)];
     let solid = one_arm(poisson, PoissonRule::ConstantRatio);
-    let setting =
-        Setting { penalty, update, friction: Some([0.2, 1e-3]), ..Setting::new(n, solid, phases) };
+    let setting = Setting { penalty, update, friction: Some([0.2, 1e-3]), ..Setting::new(n, solid, phases) };
     let settings = vec![setting.clone()];
     let compare = move |solutions: &[Solution]| {
         let exact = setting.transient(n.min(256))?;
@@ -35,11 +34,11 @@ fn case(n: usize, (penalty, update, finer): (f64, Update, usize), poisson: f64) 
         let (loaded, end) = (pressed[pressed.len() - 1], slid[slid.len() - 1]);
         let middle = slid[slid.len() / 2 - 1].normal;
         let solution = &solutions[0];
-        let half_way = solution.history[150 * finer - 50 * finer].normal_force;
-        // The contact, about 0.37 m wide, as half a wave of pressure.
-        let resolved = (std::f64::consts::PI * setting.spacing() / 0.37).powi(2);
-        let why = "mesh: (pi h/contact width)^2";
-        let row = |name: &str, computed, exact| Row::relative(name, [computed, exact], resolved, why);
+        let half_way = solution.history[100 * finer].normal_force;
+        // The contact is about 0.37 m wide.
+        // The contact is about 0.37 m wide while it slides.
+        let resolution = resolution(setting.spacing(), 0.37);
+        let row = |name: &str, computed, exact| Row::resolved(name, [computed, exact], resolution);
         Ok(vec![
             row("N_z(t0), N/m", solution.end_of(0).normal_force, loaded.normal),
             row("N_z half way through the slide, N/m", half_way, middle),

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::setting::{Phase, Setting, one_arm};
-use super::{Case, Row};
+use super::{Case, Row, resolution};
 use crate::oracle::PoissonRule;
 use crate::oracle::steady::Load;
 use crate::solution::Solution;
@@ -74,26 +74,20 @@ fn partial_contact(n: usize, velocity: f64, rule: PoissonRule) -> Case {
         let exact = setting.steady(velocity).solve(512, |x| wave.at(x), Load::Approach(APPROACH))?;
         let row = solutions[0].last();
         let h = setting.spacing();
-        // The contact as half a wave of pressure.
-        let resolved = (0.5 * TAU * h / exact.contact_width).powi(2);
-        let why = "mesh and step: (pi h/contact width)^2";
+        let resolution = resolution(h, exact.contact_width);
         let ratio = |hysteretic: f64, normal: f64| 1e4 * hysteretic / normal;
-        // The largest ratio is that of the steepest slope in contact; an edge off by (h/2)... see below.
+        // Of the steepest slope in contact, all of which but little cancels between the two sides.
         let steepest = 1e4 * TAU * wave.amplitude * (0.5 * TAU * exact.contact_width).sin();
+        let ratios = [ratio(row.hysteretic_force, row.normal_force), ratio(exact.hysteretic, exact.normal)];
         Ok(vec![
-            Row::relative("N_z, N/m", [row.normal_force, exact.normal], resolved, why),
-            Row::relative("Q_x, N/m", [row.tangential_force, exact.tangential], resolved, why),
-            Row::new(
-                "contact fraction",
-                [row.contact_fraction, exact.contact_width],
-                2.0 * h,
-                "one node at each edge",
-            ),
+            Row::resolved("N_z, N/m", [row.normal_force, exact.normal], resolution),
+            Row::resolved("Q_x, N/m", [row.tangential_force, exact.tangential], resolution),
+            Row::new("contact fraction", [row.contact_fraction, exact.contact_width], 2.0 * h, "one node at each edge"),
             Row::new(
                 "hysteretic force/N_z, 1e-4",
-                [ratio(row.hysteretic_force, row.normal_force), ratio(exact.hysteretic, exact.normal)],
-                resolved * steepest,
-                "the same, of the steepest slope in contact",
+                ratios,
+                resolution * steepest,
+                "mesh, of the steepest slope in contact",
             ),
         ])
     };
