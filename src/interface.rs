@@ -146,6 +146,12 @@ impl Interface {
         self.laws.friction.is_some()
     }
 
+    /// Whether friction still answers to the slip rate at this one, m/s.
+    pub fn grips(&self, slip_rate: f64) -> bool {
+        let answer = |law: &Friction, rate| law.shear(1.0, rate).by_rate;
+        self.laws.friction.as_ref().is_some_and(|law| answer(law, slip_rate) > 1e-6 * answer(law, 0.0))
+    }
+
     /// out = the residual with the indenter at `placement`.
     ///
     /// # Errors

@@ -165,6 +165,15 @@ impl TransientProblem for Condensed {
         }
     }
 
+    fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        let carried = self.face.carried(step)?;
+        if self.compliance.is_some() {
+            let mut values = u.view_mut()?;
+            carried.into_iter().for_each(|(node, distance)| values[2 * node] += distance);
+        }
+        Ok(())
+    }
+
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
         let noise = self.softness * self.face.noise() + 8.0 * f64::EPSILON * self.face.trial_norm();
         self.face.test(iteration, norm, self.tolerance, noise)

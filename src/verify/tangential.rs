@@ -11,8 +11,7 @@ use std::f64::consts::PI;
 use super::half_space::{OSCILLATION, deep, hertz_among_images, largest, modulus};
 use super::setting::{Indenter, Motion, Phase, Setting};
 use super::{Case, Row, resolution};
-use crate::oracle::line_contact::Oscillation;
-use crate::oracle::steady::Load;
+use crate::oracle::line_contact::{Oscillation, Westergaard};
 use crate::solution::Solution;
 
 const POISSON: f64 = 0.45;
@@ -25,7 +24,7 @@ pub fn cases(quick: bool) -> Vec<Case> {
     if quick { vec![mindlin(512), cycle(128)] } else { vec![mindlin(512), cycle(128)] }
 }
 
-const WHY: &str = "mesh: (k h)^2/6; coupling: f beta + beta^2";
+const WHY: &str = "mesh: (k h)^2/6; coupling: f beta + beta^2; creep";
 
 /// Presses frictionless: slip of some 1e-4 m in 1e8 s is nothing to a regularisation of 1e-6 m/s.
 fn press(approach: f64) -> Phase {
@@ -56,6 +55,8 @@ fn mindlin(n: usize) -> Case {
         let near = largest(solution, &end.shear, far, (0.5, 0.9 * a)) / (FRICTION * peak);
         let stuck = row.stick_fraction * row.contact_fraction;
         let smooth = resolution(h, 2.0 * a) + COUPLING;
+        // Sticking nodes creep at up to eps for a second; under full slip the contact has moved by f a^2/R.
+        let creep = 1e-6 / (FRICTION * a * a);
         Ok(vec![
             Row::new(
                 "Q_x/(f N_z) after pressing",
@@ -66,7 +67,7 @@ fn mindlin(n: usize) -> Case {
             Row::new("contact width 2a, m", [row.contact_fraction, 2.0 * a], 2.0 * h, "one node at each edge"),
             Row::new("largest error of p(x), |x| < 0.9 a, of p0", [p, 0.0], smooth, WHY),
             Row::new("width of the stick zone 2c, m", [stuck, 2.0 * c], 4.0 * h, "two nodes at each edge"),
-            Row::new("largest error of q(x), |x| < 0.8 c, of f p0", [q, 0.0], smooth, WHY),
+            Row::new("largest error of q(x), |x| < 0.8 c, of f p0", [q, 0.0], smooth + creep, WHY),
             Row::new(
                 "largest error of q(x), |x| < 0.9 a, of f p0",
                 [near, 0.0],
@@ -85,7 +86,7 @@ fn mindlin(n: usize) -> Case {
 }
 
 /// A wave at a held approach D, swayed by a sine up to full sliding and back and forth: at each step Q against the
-/// superposition Q = f [P(D) - P(D - ...)] of Jager and Ciavarella, P by the oracle's layer.
+/// superposition Q = f [P(D) - P(D - ...)] of Jager and Ciavarella, P by Westergaard.
 ///
 /// The theorem takes the tangential compliance to equal the normal one, which holds at every k > 0 on a deep layer but
 /// not for the mean, where C_xx = H/G and C_zz = H (1-2nu)/(2G (1-nu)): so the sway is lessened by the mean's own
@@ -105,12 +106,8 @@ fn cycle(n: usize) -> Case {
     setting.phases.push(sine(0.5 * FRICTION * (approach + excess * rough)));
     let settings = vec![setting.clone()];
     let compare = move |solutions: &[Solution]| {
-        let mut frictionless = setting.steady(0.0);
-        frictionless.friction = 0.0;
-        let force = |d: f64| {
-            let state = frictionless.solve(n, |x| wave.at(x), Load::Approach(d));
-            state.map_or(f64::NAN, |state| state.normal)
-        };
+        let exact = Westergaard { modulus: modulus(&setting), amplitude: wave.amplitude, wavelength: setting.width };
+        let force = |d: f64| setting.width * exact.mean_at(d, mean.zz.re);
         let exact_normal = force(approach);
         let normal = solutions[0].end_of(0).normal_force;
         let mut contact = Oscillation::new(force, approach, FRICTION);
