@@ -152,6 +152,11 @@ impl Interface {
         self.laws.friction.as_ref().is_some_and(|law| answer(law, slip_rate) > 1e-6 * answer(law, 0.0))
     }
 
+    /// The largest share of the pressure that friction takes: f.
+    pub fn largest_drag(&self) -> f64 {
+        self.laws.friction.as_ref().map_or(0.0, |law| law.shear(1.0, f64::MAX).shear)
+    }
+
     /// out = the residual with the indenter at `placement`.
     ///
     /// # Errors

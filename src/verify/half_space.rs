@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::setting::{Indenter, Phase, Setting, elastic};
-use super::{Case, MESH, Row, resolution};
+use super::{Case, Row, resolution};
 use crate::oracle::line_contact::{Hertz, Westergaard, plane_strain_modulus};
 use crate::solution::Solution;
 
@@ -43,6 +43,7 @@ pub fn largest(solution: &Solution, field: &[f64], exact: impl Fn(f64) -> f64, (
 }
 
 const EDGE: &str = "one node at each edge";
+const EDGES: &str = "mesh: (k h)^2, next to the edges";
 /// A wave on a layer two wavelengths deep; the depth is felt by e^{-2kH} = 1e-11 at most, but by the mean,
 /// whose compliance is the layer's. The pressures are compared at the mean pressure found.
 fn westergaard(n: usize, approach: f64) -> Case {
@@ -59,12 +60,13 @@ fn westergaard(n: usize, approach: f64) -> Case {
         let summit = end.pressure[0];
         let uniform = setting.layer().compliance(0.0, setting.moduli()).zz.re;
         let held = exact.mean_at(approach, uniform);
-        let resolution = resolution(h, 2.0 * a);
+        // Next to full contact the pressure is the wave.
+        let resolution = resolution(h, (2.0 * a).min(0.5));
         Ok(vec![
             Row::resolved("N_z at this approach, N/m", [mean, held], resolution),
             Row::new("contact width, m", [solution.last().contact_fraction, 2.0 * a], 2.0 * h, EDGE),
             Row::resolved("p under the summit at this N_z, Pa", [summit, peak], resolution),
-            Row::new("largest error of p(x), |x| < 0.9 a, of its peak", [error, 0.0], resolution, MESH),
+            Row::new("largest error of p(x), |x| < 0.9 a, of its peak", [error, 0.0], 6.0 * resolution, EDGES),
             Row::new(OSCILLATION, [solution.last().traction_oscillation, 0.0], h / a, "edges: h/a; a checkerboard: 1"),
         ])
     };
@@ -103,7 +105,7 @@ fn hertz(n: usize) -> Case {
         Ok(vec![
             Row::new("contact width 2a, m", [solution.last().contact_fraction, 2.0 * a], 2.0 * h, EDGE),
             Row::resolved("peak pressure p0, Pa", [peak, exact.peak()], resolution),
-            Row::new("largest error of p(x), |x| < 0.9 a, of p0", [error, 0.0], resolution, MESH),
+            Row::new("largest error of p(x), |x| < 0.9 a, of p0", [error, 0.0], 6.0 * resolution, EDGES),
             Row::new(OSCILLATION, [solution.last().traction_oscillation, 0.0], h / a, "edges: h/a; a checkerboard: 1"),
         ])
     };

@@ -51,28 +51,19 @@ pub struct Phase {
     pub steps: usize,
     /// Approach at its end, m.
     pub approach: f64,
-    /// Tangential motion.
-    pub motion: Motion,
-}
-
-/// Tangential motion.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Motion {
-    /// Velocity, m/s.
-    Velocity(f64),
-    /// Amplitude (m) and cycles of a sine.
-    Sine(f64, f64),
+    /// Of the indenter along +x, m/s.
+    pub velocity: f64,
 }
 
 impl Phase {
     /// To an approach, without sliding.
     pub fn press(duration: f64, steps: usize, approach: f64) -> Self {
-        Self { duration, steps, approach, motion: Motion::Velocity(0.0) }
+        Self { duration, steps, approach, velocity: 0.0 }
     }
 
     /// Over a distance at a held approach.
     pub fn slide(velocity: f64, distance: f64, steps: usize, approach: f64) -> Self {
-        Self { duration: distance / velocity.abs(), steps, approach, motion: Motion::Velocity(velocity) }
+        Self { duration: distance / velocity.abs(), steps, approach, velocity }
     }
 }
 
@@ -157,14 +148,9 @@ impl Setting {
             let _ = write!(text, "[friction]\nlaw = \"coulomb_tanh\"\ncoefficient = {coefficient:?}\n");
             let _ = writeln!(text, "regularisation = {regularisation:?}");
         }
-        for Phase { duration, steps, approach, motion } in &self.phases {
+        for Phase { duration, steps, approach, velocity } in &self.phases {
             let _ = write!(text, "[[phase]]\nduration = {duration:?}\nsteps = {steps}\napproach = {approach:?}\n");
-            let _ = match motion {
-                Motion::Velocity(velocity) => writeln!(text, "velocity = {velocity:?}"),
-                Motion::Sine(amplitude, cycles) => {
-                    writeln!(text, "tangential = {{ amplitude = {amplitude:?}, cycles = {cycles:?} }}")
-                }
-            };
+            let _ = writeln!(text, "velocity = {velocity:?}");
         }
         text
     }
@@ -216,7 +202,7 @@ impl Setting {
         let mut phases = Vec::with_capacity(self.phases.len());
         for phase in &self.phases {
             let dt = phase.duration / phase.steps as f64;
-            let velocity = if let Motion::Velocity(velocity) = phase.motion { velocity } else { 0.0 };
+            let velocity = phase.velocity;
             let step = |i: usize| {
                 let part = i as f64 / phase.steps as f64;
                 let approach = approach + (phase.approach - approach) * part;
