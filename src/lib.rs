@@ -18,4 +18,6 @@ pub mod plot;
 pub mod profile;
 pub mod rheology;
 pub mod scene;
+pub mod solution;
 pub mod solve;
+pub mod verify;

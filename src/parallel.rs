@@ -63,6 +63,7 @@ fn encode(error: &Error) -> Vec<u8> {
         Error::Usage(text) => ("usage", vec![text.clone()]),
         Error::Solver(text) => ("solver", vec![text.clone()]),
         Error::Domain(text) => ("domain", vec![text.clone()]),
+        Error::Mismatch(text) => ("mismatch", vec![text.clone()]),
         Error::Internal(text) => ("internal", vec![text.clone()]),
     };
     std::iter::once(kind.to_owned()).chain(texts).collect::<Vec<_>>().join("\0").into_bytes()
@@ -79,6 +80,7 @@ fn decode(bytes: &[u8]) -> Error {
         "usage" => Error::Usage(next()),
         "solver" => Error::Solver(next()),
         "domain" => Error::Domain(next()),
+        "mismatch" => Error::Mismatch(next()),
         _ => Error::Internal(next()),
     }
 }
@@ -95,6 +97,7 @@ mod tests {
             Error::Usage("u".into()),
             Error::Solver("s".into()),
             Error::Domain("d".into()),
+            Error::Mismatch("m".into()),
             Error::Internal("i".into()),
         ] {
             assert_eq!(decode(&encode(&error)), error);

@@ -41,13 +41,7 @@ pub fn run(arguments: &RunArguments) -> Result<()> {
     let session = Session::start(&arguments.petsc)?;
     let world = session.world();
     let outcome = solve(&session, &world, arguments);
-    if let Err(error @ Error::Internal(_)) = &outcome
-        && world.size() > 1
-    {
-        // The other ranks may wait for this one inside a library.
-        eprintln!("mpjr: rank {}: {error}", world.rank());
-        world.abort(error.exit_code());
-    }
+    super::abort_if_alone(&world, &outcome);
     outcome
 }
 

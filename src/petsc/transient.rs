@@ -79,6 +79,10 @@ pub trait Implicit {
     fn solve(&mut self, _b: &Vector, _x: &mut Vector) -> Result<()> {
         Err(Error::Internal("the tangent of this problem is a matrix".into()))
     }
+    /// Improves on `u`, the last accepted state, as the point from which Newton's method begins.
+    fn guess(&mut self, _step: Step, _u: &mut Vector) -> Result<()> {
+        Ok(())
+    }
     /// Judges the Newton iterate whose residual norm is `norm`.
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
     /// Takes note of an accepted step that ends at `u`.
@@ -119,6 +123,7 @@ pub struct Integrator {
 /// What the callbacks reach through PETSc's context pointer.
 struct Context<'a, P> {
     problem: &'a mut P,
+    ts: ffi::TS,
     step: Step,
     newton: usize,
     /// Steps cut since TS began.
@@ -185,7 +190,7 @@ impl Integrator {
         u: &mut Vector,
         start: Step,
     ) -> Result<()> {
-        let mut context = Context { problem, step: start, newton: 0, cuts: 0, error: None };
+        let mut context = Context { problem, ts: self.ts, step: start, newton: 0, cuts: 0, error: None };
         let pointer = (&raw mut context).cast::<c_void>();
         let (ts, mut snes, mut reason) = (self.ts, null_mut(), 0);
         // SAFETY: `context` outlives TSSolve, the only call that runs the callbacks; PETSc gives each callback the
@@ -197,6 +202,7 @@ impl Integrator {
             check(ffi::TSSetPostStep(ts, Some(post_step::<P>)))?;
             check(ffi::TSGetSNES(ts, &mut snes))?;
             check(ffi::SNESSetConvergenceTest(snes, Some(convergence::<P>), pointer, None))?;
+            check(ffi::SNESSetComputeInitialGuess(snes, Some(guess::<P>), pointer))?;
             if self.own {
                 let (mut ksp, mut pc) = (null_mut(), null_mut());
                 check(ffi::MatShellSetContext(jacobian.raw(), pointer))?;
@@ -329,6 +335,18 @@ unsafe extern "C" fn solve<P: Implicit>(pc: ffi::PC, b: ffi::Vec, x: ffi::Vec) -
     unsafe {
         ffi::PCShellGetContext(pc, (&raw mut pointer).cast::<c_void>());
         guarded::<P>(pointer, |context| context.problem.solve(&Vector::borrow(b), &mut Vector::borrow(x)))
+    }
+}
+
+unsafe extern "C" fn guess<P: Implicit>(_snes: ffi::SNES, u: ffi::Vec, pointer: *mut c_void) -> ffi::PetscErrorCode {
+    // SAFETY: as for `residual`; TS is in the middle of a step that begins at its time.
+    unsafe {
+        guarded::<P>(pointer, |context| {
+            let mut start = 0.0;
+            check(ffi::TSGetTime(context.ts, &mut start))?;
+            let Step { dt, .. } = attempted(context.ts, start)?;
+            context.problem.guess(Step { t: start + dt, dt }, &mut Vector::borrow(u))
+        })
     }
 }
 

@@ -153,6 +153,10 @@ impl Implicit for Driver<'_> {
         self.problem.solve(b, x)
     }
 
+    fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        self.problem.guess(step, u)
+    }
+
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
         self.problem.test(iteration, norm)
     }
