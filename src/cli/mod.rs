@@ -2,6 +2,7 @@
 
 mod check;
 mod fit;
+mod plot;
 mod progress;
 mod record;
 mod run;
@@ -29,6 +30,8 @@ enum Command {
     Check(check::CheckArguments),
     /// Identify a Prony series from measured data or from the fractional power law
     Fit(fit::FitArgs),
+    /// Draw figures from results
+    Plot(plot::PlotArguments),
 }
 
 /// Reads the command line, does what it says, and returns the exit code: 0 done, 2 scene or command line wrong,
@@ -47,7 +50,14 @@ pub fn main() -> i32 {
     let outcome: Result<()> = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
-        // It needs no solver, so that one process does it for all.
+        // These need no solver, so that one process does it for all.
+        Command::Plot(arguments) => {
+            if is_first_process() {
+                plot::run(&arguments)
+            } else {
+                Ok(())
+            }
+        }
         Command::Fit(arguments) => {
             if is_first_process() {
                 fit::run(&arguments)
