@@ -35,7 +35,7 @@ pub fn size<DB: DrawingBackend>(painter: &Painter<DB>) -> (f64, f64) {
 fn draw_curves<DB: DrawingBackend>(figure: &Figure, painter: &Painter<DB>) -> Result<()> {
     let (width, height) = size(painter);
     let (x_range, y_range) = (range(&figure.x, figure, |p| p.0), range(&figure.y, figure, |p| p.1));
-    let (y_ticks, y_power) = ticks(figure.y.scale, y_range, (height / 85.0) as usize);
+    let (y_ticks, y_power) = ticks(figure.y.scale, y_range, (height / 65.0) as usize);
     let widest = y_ticks.iter().filter_map(|tick| tick.label.as_deref()).map(|label| painter.width(label, TICK));
     let (left, right) = (58.0 + widest.fold(0.0, f64::max), width - 24.0);
     let legend = Legend::new(painter, entries(figure), right - left);
@@ -77,7 +77,7 @@ pub fn with_power(axis: &Axis, exponent: i32) -> String {
         0 => axis.label.clone(),
         exponent => match axis.label.rsplit_once(", ") {
             Some((quantity, unit)) => format!("{quantity}, {} {unit}", power(exponent)),
-            None => format!("{} / {}", axis.label, power(exponent)),
+            None => format!("{}, {}", axis.label, power(exponent)),
         },
     }
 }

@@ -103,7 +103,7 @@ impl Colouring {
 pub fn draw<DB: DrawingBackend>(map: &Map, painter: &Painter<DB>) -> Result<()> {
     let (width, height) = size(painter);
     let (x_range, y_range) = (map.x.range.unwrap_or(map.raster.x), map.y.range.unwrap_or(map.raster.y));
-    let (y_ticks, y_power) = ticks(Scale::Linear, y_range, (height / 85.0) as usize);
+    let (y_ticks, y_power) = ticks(Scale::Linear, y_range, (height / 65.0) as usize);
     let widest = y_ticks.iter().filter_map(|tick| tick.label.as_deref()).map(|label| painter.width(label, TICK));
     let left = 58.0 + widest.fold(0.0, f64::max);
     let right = match &map.colouring {

@@ -19,7 +19,7 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
         tangential.push(curve);
     }
     let normal = vec![force(run, "N", &history.normal, 0)];
-    let hysteretic = vec![force(run, "∫ p ∂h/∂x dx", &history.hysteretic, 2)];
+    let hysteretic = vec![force(run, "hysteretic force", &history.hysteretic, 2)];
     let figure = |title: String, label: &str, curves: Vec<Curve>| {
         let mut figure = Figure {
             title,
@@ -32,9 +32,9 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
         figure
     };
     let figures = vec![
-        figure(run.scene.title.clone(), "normal force N", normal),
-        figure(String::new(), "tangential force Q", tangential),
-        figure(String::new(), "hysteretic force", hysteretic),
+        figure(format!("(a) {}", run.scene.title), "normal force N", normal),
+        figure("(b) tangential force".into(), "tangential force Q", tangential),
+        figure("(c) hysteretic force".into(), "∫ p ∂h/∂x dx", hysteretic),
     ];
     Ok(Sheet::of_curves(figures, 1, (900, 380)))
 }
@@ -54,12 +54,21 @@ fn phase_ends(run: &Run, figure: &mut Figure) {
     let (low, high) = values().fold((0.0f64, 0.0f64), |(low, high), v| (low.min(v), high.max(v)));
     let air = 0.06 * (high - low);
     figure.y = figure.y.clone().over(low - air, high + air);
-    let mut end = 0.0;
     let phases = &run.scene.phases;
-    for (i, phase) in phases.iter().enumerate().take(phases.len().saturating_sub(1)) {
+    let last = run.scene.duration();
+    let mut ends: Vec<(f64, String)> = Vec::new();
+    let mut end = 0.0;
+    for phase in phases.iter().take(phases.len().saturating_sub(1)) {
         end += phase.duration;
+        // Lines that would lie on each other share an entry.
+        match ends.last_mut() {
+            Some((before, names)) if end - *before < 0.01 * last => *names += &format!(" and {}", phase.name),
+            _ => ends.push((end, phase.name.clone())),
+        }
+    }
+    for (i, (end, names)) in ends.into_iter().enumerate() {
         figure.curves.push(Curve {
-            label: format!("end of {}", phase.name),
+            label: format!("end of {names}"),
             points: vec![(end, low - air), (end, high + air)],
             colour: PALETTE[3 + i % 3],
             stroke: Stroke::Dotted,

@@ -231,6 +231,16 @@ impl Interface {
     }
 }
 
+/// A number in `digits` significant digits, without trailing zeros.
+pub(super) fn short(value: f64, digits: i32) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, 12) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
 /// The index of the value nearest to `wanted`.
 fn nearest(values: &[f64], wanted: f64) -> usize {
     let distance = |value: &f64| (value - wanted).abs();
@@ -255,6 +265,10 @@ mod tests {
         assert_eq!(spread(&[5, 6], 4), [5, 6]);
         assert_eq!(spread(&[5, 6, 7], 1), [7]);
         assert_eq!(spread::<u8>(&[], 4), []);
+        assert_eq!(
+            [0.0, 1e-3, 2.154e-3, 10.0, 66.011606, 123456.0].map(|v| short(v, 4)),
+            ["0", "0.001", "0.002154", "10", "66.01", "123456"]
+        );
         assert_eq!(nearest(&[0.0, 1.0, 2.0], 1.4), 1);
     }
 }

@@ -1,6 +1,6 @@
 //! The indenter and the face under it.
 
-use super::{Interface, Run};
+use super::{Interface, Run, short};
 use crate::error::Result;
 use crate::output::reader::Field;
 use crate::plot::{Axis, Curve, Figure, PALETTE, REFERENCE, Sheet, Stroke};
@@ -21,7 +21,7 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
         let end = interface.time[last];
         let row = super::nearest(&run.history.time, end);
         let sliding = run.history.sliding[row];
-        let title = format!("(b) t = {}, after sliding by {sliding:.4} m", seconds(&interface, last));
+        let title = format!("(b) t = {}, after sliding by {} m", seconds(&interface, last), short(sliding, 4));
         figures.push(figure(&interface, &fields, last, title));
     }
     Ok(Sheet::of_curves(figures, 1, (900, 480)))
@@ -33,7 +33,7 @@ struct Fields {
 }
 
 fn seconds(interface: &Interface, frame: usize) -> String {
-    format!("{:.4} s", interface.time[frame])
+    format!("{} s", short(interface.time[frame], 4))
 }
 
 fn figure(interface: &Interface, fields: &Fields, frame: usize, title: String) -> Figure {

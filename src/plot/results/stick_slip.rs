@@ -16,7 +16,10 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
         State { run, pressure: run.results.interface("pressure")?, slip_rate: run.results.interface("slip_rate")? };
     let t0 = run.approach_time();
     let end = interface.time[interface.time.len() - 1];
-    let mut panels = vec![map(&interface, &state, (0.0, t0.min(end)), "(a) approach", "time t, s")];
+    let mut panels = Vec::new();
+    if t0 > 0.0 {
+        panels.push(map(&interface, &state, (0.0, t0.min(end)), "(a) approach", "time t, s"));
+    }
     if let Some(row) = run.history.sliding_start() {
         let all_slips = run.history.time[row];
         let until = (t0 + 1.6 * (all_slips - t0)).min(end);
@@ -26,7 +29,7 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
         }
     }
     if end > t0 {
-        let letter = if panels.len() == 2 { "(c)" } else { "(b)" };
+        let letter = ["(a)", "(b)", "(c)"][panels.len()];
         panels.push(map(&interface, &state, (0.0, end), &format!("{letter} whole history"), "time t, s"));
     }
     Ok(Sheet { panels, columns: 1, size: (900, 440) })

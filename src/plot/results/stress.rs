@@ -1,6 +1,6 @@
 //! Stress in the bulk: what Figure 5 of the paper shows.
 
-use super::{Run, nearest};
+use super::{Run, nearest, short};
 use crate::error::Result;
 use crate::plot::{Axis, Colouring, Map, Panel, Ramp, Raster, Sheet};
 use crate::scene::Sides;
@@ -36,8 +36,8 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
     for (i, &frame) in frames.iter().enumerate() {
         let row = nearest(&run.history.time, time[frame]);
         let when = match run.history.sliding[row] {
-            0.0 => format!("t = {:.4} s", time[frame]),
-            sliding => format!("t = {:.4} s, s = {sliding:.3} m", time[frame]),
+            0.0 => format!("t = {} s", short(time[frame], 4)),
+            sliding => format!("t = {} s, s = {} m", short(time[frame], 4), short(sliding, 3)),
         };
         for (j, (_, symbol, ramp)) in COMPONENTS.iter().enumerate() {
             // The same levels at all times, so that they can be compared.

@@ -1,6 +1,6 @@
 //! Tractions along the face: what Figure 6 of the paper shows.
 
-use super::{Interface, Run, nearest, spread};
+use super::{Interface, Run, nearest, short, spread};
 use crate::error::Result;
 use crate::output::reader::Field;
 use crate::plot::{Axis, Colour, Curve, Figure, Ramp, Sheet, Stroke};
@@ -8,6 +8,9 @@ use crate::scene::Friction;
 
 /// Curves in a panel.
 const INSTANTS: usize = 5;
+
+/// The bounds of the shear traction.
+const BOUND: Colour = (70, 70, 70);
 
 /// A stretch of the history.
 struct Stage {
@@ -43,6 +46,8 @@ fn stages(run: &Run, interface: &Interface) -> Vec<Stage> {
         let slips = history.sliding_start().map_or(end, |row| history.time[row]);
         stages.push(Stage { name: "from stick to slip", frames: spread(&interface.between(t0, slips), INSTANTS) });
         let overlap = overlap_time(run).unwrap_or(end);
+        // A while later, so that no place is near to sticking.
+        let slips = history.sliding_start().map_or(end, |row| time_after(run, 1.5 * history.sliding[row].abs()));
         stages.push(Stage { name: "gross sliding", frames: spread(&interface.between(slips, overlap), INSTANTS) });
         if overlap < end {
             let name = "contact over material loaded before";
@@ -51,7 +56,18 @@ fn stages(run: &Run, interface: &Interface) -> Vec<Stage> {
     }
     // One profile alone is the end of the stage before.
     stages.retain(|stage| stage.frames.len() > 1);
+    if stages.is_empty() {
+        let all: Vec<usize> = (0..interface.time.len()).collect();
+        stages.push(Stage { name: "all profiles", frames: spread(&all, INSTANTS) });
+    }
     stages
+}
+
+/// When the indenter has slid by `distance`; the end if it never does.
+fn time_after(run: &Run, distance: f64) -> f64 {
+    let history = &run.history;
+    let row = history.sliding.iter().position(|s| s.abs() >= distance);
+    history.time[row.unwrap_or(history.time.len() - 1)]
 }
 
 /// When the front of the contact reaches what the neighbouring contact of a periodic face had loaded.
@@ -66,6 +82,9 @@ fn overlap_time(run: &Run) -> Option<f64> {
 
 fn label(run: &Run, time: f64) -> String {
     let t0 = run.approach_time();
+    if t0 <= 0.0 {
+        return format!("t = {} s", short(time, 4));
+    }
     let ratio = time / t0;
     // Just after t0 the ratio says little.
     if ratio > 1.0 && ratio < 1.02 {
@@ -115,18 +134,19 @@ fn tangential(
         row.iter().fold(0.0f64, |low, q| low.min(*q)) < -0.02 * row.iter().fold(0.0f64, |high, q| high.max(q.abs()))
     });
     for (&frame, &colour) in stage.frames.iter().zip(&colours) {
-        curves.push(bound(frame, 1.0, colour, ""));
+        let label = label(run, interface.time[frame]);
+        curves.push(curve(label, interface.profile(shear, frame), colour, Stroke::Solid));
+    }
+    // Where all slips, the bounds cover the curves: in grey, so that both are seen.
+    for (&frame, &colour) in stage.frames.iter().zip(&colours) {
+        curves.push(bound(frame, 1.0, if reversed { colour } else { BOUND }, ""));
         if reversed {
             curves.push(bound(frame, -1.0, colour, ""));
         }
     }
-    for (&frame, &colour) in stage.frames.iter().zip(&colours) {
-        let label = label(run, interface.time[frame]);
-        curves.push(curve(label, interface.profile(shear, frame), colour, Stroke::Solid));
-    }
     // One entry for all bounds, in the colour of none.
     let name = if reversed { "±f p" } else { "f p" };
-    curves.push(curve(name.into(), Vec::new(), (90, 90, 90), Stroke::Dotted));
+    curves.push(curve(name.into(), Vec::new(), BOUND, Stroke::Dotted));
     Figure {
         title: format!("{title}: shear traction"),
         x: Axis::linear(interface.label()),

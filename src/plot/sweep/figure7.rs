@@ -1,6 +1,7 @@
 //! Tangential force against time for each model, and its steady value against velocity: Figure 7 of the paper.
 
 use super::{Case, Model, Sweep, against_velocity, bounds};
+use crate::plot::results::short;
 use crate::plot::{Axis, Curve, Figure, REFERENCE, Ramp, Sheet, Stroke};
 
 /// One panel for each model and one for the steady value.
@@ -32,7 +33,7 @@ fn transient(model: &Model, letter: char, highest: f64) -> Figure {
         .cases
         .iter()
         .zip(colours)
-        .map(|(case, colour)| curve(case, velocity(case.velocity), colour, Stroke::Solid))
+        .map(|(case, colour)| curve(case, short(case.velocity, 4), colour, Stroke::Solid))
         .collect();
     for (bound, label, stroke) in
         [(&model.instantaneous, "elastic, G(0)", Stroke::Dashed), (&model.long_term, "elastic, G(∞)", Stroke::Dotted)]
@@ -62,20 +63,5 @@ fn steady(sweep: &Sweep, letter: char) -> Figure {
         y: Axis::linear("steady tangential force Q, N/m"),
         curves,
         shaded: None,
-    }
-}
-
-/// In four digits, without trailing zeros.
-pub(super) fn velocity(velocity: f64) -> String {
-    let digits = (3 - velocity.log10().floor() as i32).clamp(0, 9) as usize;
-    let text = format!("{velocity:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn velocities_are_short() {
-        assert_eq!([1e-3, 2.154e-3, 0.1, 1.0, 12.0].map(super::velocity), ["0.001", "0.002154", "0.1", "1", "12"]);
     }
 }

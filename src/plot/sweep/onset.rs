@@ -1,7 +1,7 @@
 //! From stick to slip: what the time axis of Figure 7 has no room for.
 
-use super::figure7::velocity;
 use super::{Case, Model, Sweep};
+use crate::plot::results::short;
 use crate::plot::{Axis, Curve, Figure, REFERENCE, Ramp, Sheet, Stroke};
 
 /// Tangential force against the displacement of the indenter while parts of the contact stick, for each model.
@@ -27,7 +27,7 @@ fn panel(model: &Model, letter: char, reach: f64) -> Figure {
         .cases
         .iter()
         .zip(colours)
-        .map(|(case, colour)| curve(case, velocity(case.velocity), colour, Stroke::Solid))
+        .map(|(case, colour)| curve(case, short(case.velocity, 4), colour, Stroke::Solid))
         .collect();
     for (bound, label, stroke) in
         [(&model.instantaneous, "elastic, G(0)", Stroke::Dashed), (&model.long_term, "elastic, G(∞)", Stroke::Dotted)]
