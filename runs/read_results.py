@@ -33,7 +33,10 @@ for axis, (label, cases) in zip(axes, viscoelastic.items()):
     axis.legend(fontsize="x-small")
 for label, cases in models.items():
     velocities, _, _, steady = zip(*sorted(cases, key=lambda case: case[0]))
-    axes[-1].semilogx(velocities, steady, "o-" if label in viscoelastic else ":", label=label)
+    if label in viscoelastic:
+        axes[-1].semilogx(velocities, steady, "o-", label=label)
+    else:
+        axes[-1].axhline(steady[0], linestyle=":", color=f"C{len(axes[-1].lines)}", label=label)
 axes[-1].set(title="steady value", xlabel="v, m/s", ylabel="tangential force, N/m")
-axes[-1].legend(fontsize="x-small")
+axes[-1].legend(fontsize="x-small", loc="upper left", bbox_to_anchor=(1, 1))
 figure.savefig(sys.argv[2] if len(sys.argv) > 2 else "figure7.png", dpi=150)

@@ -6,10 +6,11 @@ use crate::plot::{Axis, Curve, Figure, REFERENCE, Ramp, Sheet, Stroke};
 
 /// Tangential force against the displacement of the indenter while parts of the contact stick, for each model.
 pub fn sheet(sweep: &Sweep) -> Sheet {
-    let all = || sweep.models.iter().flat_map(|model| &model.cases);
-    // Until everything slips at every velocity, and as much again.
+    let all =
+        sweep.models.iter().flat_map(|model| model.cases.iter().chain(&model.instantaneous).chain(&model.long_term));
+    // Until everything slips in every case, and a little more.
     let slips = |case: &Case| case.history.sliding_start().map(|row| case.history.sliding[row].abs());
-    let reach = 1e3 * 1.6 * all().filter_map(slips).filter(|s| *s < 1e-2).fold(1e-5, f64::max);
+    let reach = 1e3 * 1.2 * all.filter_map(slips).filter(|s| *s < 1e-2).fold(1e-5, f64::max);
     let figures = sweep.models.iter().zip('a'..='z').map(|(model, letter)| panel(model, letter, reach)).collect();
     Sheet::of_curves(figures, sweep.models.len().clamp(1, 2), (820, 600))
 }
