@@ -233,6 +233,10 @@ fn the_scenes_of_runs_are_read_and_resolved() {
     assert!(files.len() >= 5);
     for file in files {
         let text = std::fs::read_to_string(&file).unwrap();
+        // A sweep is no scene.
+        if text.contains("\n[vary]") {
+            continue;
+        }
         assert_round_trip(&read(&text, &Source { file, overrides: vec![] }).unwrap_or_else(|error| panic!("{error}")));
     }
 }
