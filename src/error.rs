@@ -33,6 +33,8 @@ pub enum Error {
     /// A law cannot respond at the point it was asked for. Inside a solve the step is cut; outside it is an error of
     /// the scene.
     Domain(String),
+    /// What was computed is not what is known to be right: a defect of this program or of its installation. Exit code 1.
+    Mismatch(String),
     /// A library refused a call it should have taken: a defect of this program or of its installation. Exit code 1.
     Internal(String),
 }
@@ -54,7 +56,7 @@ impl Error {
             Self::Scene { .. } | Self::Usage(_) => 2,
             Self::Solver(_) | Self::Domain(_) => 3,
             Self::File { .. } => 4,
-            Self::Internal(_) => 1,
+            Self::Mismatch(_) | Self::Internal(_) => 1,
         }
     }
 }
@@ -67,7 +69,11 @@ impl fmt::Display for Error {
             }
             Self::Scene { file, key, reason } => write!(f, "{}: {key}: {reason}", file.display()),
             Self::File { file, reason } => write!(f, "{}: {reason}", file.display()),
-            Self::Usage(text) | Self::Solver(text) | Self::Domain(text) | Self::Internal(text) => f.write_str(text),
+            Self::Usage(text)
+            | Self::Solver(text)
+            | Self::Domain(text)
+            | Self::Mismatch(text)
+            | Self::Internal(text) => f.write_str(text),
         }
     }
 }

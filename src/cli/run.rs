@@ -41,13 +41,7 @@ pub fn run(arguments: &RunArguments) -> Result<()> {
     let session = Session::start(&arguments.petsc)?;
     let world = session.world();
     let outcome = solve(&session, &world, arguments);
-    if let Err(error @ Error::Internal(_)) = &outcome
-        && world.size() > 1
-    {
-        // The other ranks may wait for this one inside a library.
-        eprintln!("mpjr: rank {}: {error}", world.rank());
-        world.abort(error.exit_code());
-    }
+    super::abort_if_alone(&world, &outcome);
     outcome
 }
 
@@ -56,13 +50,12 @@ fn solve(session: &Session, world: &SimpleCommunicator, arguments: &RunArguments
     let started = SystemTime::now();
     let clock = Instant::now();
     let file = &arguments.scene;
-    let text = share_text(world, || {
-        std::fs::read_to_string(file).map_err(|error| Error::file(file, format!("cannot be read: {error}")))
-    })?;
-    let scene = scene::read(&text, &Source { file: file.clone(), overrides: arguments.set.clone() })?;
+    let open = |file: &Path| share_text(world, || scene::open(file));
+    let source = Source { file: file.clone(), overrides: arguments.set.clone() };
+    let scene = scene::read_with(&open(file)?, &source, &open)?;
     let out = arguments.out.clone().unwrap_or_else(|| default_output(file));
 
-    let problem = composition::build(world, &scene)?;
+    let problem = composition::build(world, &scene, file)?;
     let Problem { mut strategy, mut tangent, mut u, phases, settings, mesh } = problem;
     let steps = phases.iter().map(|phase| phase.steps.len()).sum();
     let metadata = Metadata {

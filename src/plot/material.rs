@@ -2,7 +2,7 @@
 
 use super::{Axis, Curve, Figure, PALETTE, REFERENCE, Stroke};
 use crate::rheology::fit::{Samples, Test};
-use crate::rheology::{Band, Fractional, Prony};
+use crate::rheology::{Band, Fractional, Poisson, Prony};
 
 /// A series to draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,6 +13,34 @@ pub struct Series<'a> {
     pub instantaneous: f64,
     /// The series.
     pub prony: &'a Prony,
+}
+
+/// The Poisson ratio over time of some materials, each with its entry in the legend: (3 K - 2 G)/(6 K + 2 G) of the
+/// moduli at that time. `band` has the times that a loading history visits; the figure shows two decades more on
+/// either side.
+pub fn poisson_figure(materials: &[(&str, &Poisson)], band: Band) -> Figure {
+    let times = Band { from: band.from / 100.0, to: band.to * 100.0 };
+    let curves: Vec<Curve> = materials
+        .iter()
+        .enumerate()
+        .map(|(i, (label, poisson))| Curve {
+            label: (*label).into(),
+            points: times.samples(400).into_iter().map(|t| (t, poisson.at(t))).collect(),
+            colour: PALETTE[i % PALETTE.len()],
+            stroke: Stroke::Solid,
+        })
+        .collect();
+    let values = || curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
+    let (least, most) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    // A ratio that stays is a line through the middle.
+    let margin = (0.05 * (most - least)).max(0.01);
+    Figure {
+        title: "Poisson ratio".into(),
+        x: Axis::log("time t, s").over(times.from, times.to),
+        y: Axis::linear("Poisson ratio ν(t) = (3K − 2G)/(6K + 2G)").over(least - margin, most + margin),
+        curves,
+        shaded: Some((band, "times of the loading history".into())),
+    }
 }
 
 /// What the series stand for.

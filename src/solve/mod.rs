@@ -35,6 +35,8 @@ pub trait TransientProblem {
     fn solve(&mut self, _b: &Vector, _x: &mut Vector) -> Result<()> {
         Err(Error::Internal("the tangent of this problem is a matrix".into()))
     }
+    /// Improves on `u`, the accepted state, as the point from which Newton's method begins.
+    fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()>;
     /// Judges a Newton iterate by the norm of its residual.
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
     /// Takes the accepted state to the end of an accepted step.

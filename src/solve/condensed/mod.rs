@@ -143,6 +143,15 @@ impl<B: Backing> TransientProblem for Condensed<B> {
         }
     }
 
+    fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        let carried = self.face.carried(step)?;
+        let mut values = u.view_mut()?;
+        if !values.is_empty() {
+            carried.into_iter().for_each(|(node, distance)| values[2 * node] += distance);
+        }
+        Ok(())
+    }
+
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
         let noise = self.backing.softness() * self.face.noise() + 8.0 * f64::EPSILON * self.face.trial_norm();
         self.face.test(iteration, norm, self.tolerance, noise)
