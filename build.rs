@@ -8,7 +8,7 @@ const FUNCTIONS: &str = include_str!("src/petsc/functions.txt");
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo:rerun-if-changed=src/petsc/functions.txt");
     println!("cargo:rerun-if-changed=src/petsc/wrapper.h");
-    for path in ["HEAD", "refs/heads"].iter().filter_map(|name| git(&["rev-parse", "--git-path", name])) {
+    for path in ["HEAD", "logs/HEAD"].iter().filter_map(|name| git(&["rev-parse", "--git-path", name])) {
         // A path that is not there would count as changed at every build.
         if std::path::Path::new(&path).exists() {
             println!("cargo:rerun-if-changed={path}");

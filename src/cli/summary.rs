@@ -125,7 +125,7 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     );
     let _ = writeln!(
         text,
-        "{:<15}{:.4} of the face, {:.4} of it sticking; deepest penetration {:.1e} m",
+        "{:<15}{:.4} of the face, {:.4} of it sticking; penetration {:.1e} m",
         "final contact:", last.contact_fraction, last.stick_fraction, last.max_penetration
     );
     let _ = writeln!(text, "{:<15}{} steps, {} Newton iterations{pieces}", "work:", counts.steps, counts.newton);
