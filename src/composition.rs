@@ -1,5 +1,9 @@
 //! The composition root: the one place that matches on what a scene asks for and builds the parts for it.
 
+mod profile;
+
+use std::path::Path;
+
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
 
@@ -11,15 +15,17 @@ use crate::friction::Friction;
 use crate::interface::{Interface, Laws};
 use crate::loading::{self, Motion, Phase};
 use crate::mesh::{Layer, Mesh, Sides};
-use crate::parallel::agree;
+use crate::parallel::{agree, share_numbers};
 use crate::petsc::{Linear, Matrix, Settings, Vector};
-use crate::profile::{Circle, Harmonic, Parabola, Profile, Repeated, Wedge};
+use crate::profile::Profile;
 use crate::rheology::{Arm, Memory, Prony};
 use crate::scene::{self, PoissonRule, Scene, When};
 use crate::solve::{
     Backing, Body, Compliance, Condensed, Following, Interior, LARGE_FACE, Limits, Moduli, Monolithic, Relaxation,
     Remembering, Source, TransientProblem,
 };
+
+pub use profile::{Finest, Shape, elevations, shape};
 
 /// A scene made ready to run.
 pub struct Problem {
@@ -37,9 +43,12 @@ pub struct Problem {
     pub mesh: Mesh,
 }
 
-/// Builds what `scene` asks for, distributed over `comm`.
-pub fn build(comm: &SimpleCommunicator, scene: &Scene) -> Result<Problem> {
-    build_with_profile(comm, scene, profile(scene))
+/// Builds what `scene`, which was read from `file`, asks for, distributed over `comm`. What it needs of other files is
+/// read by one rank.
+pub fn build(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Problem> {
+    // First what the scene may be refused for.
+    let elevations = share_numbers(comm, || elevations(scene, file))?;
+    build_with_profile(comm, scene, shape(scene, file, &elevations)?.profile)
 }
 
 /// As [`build`], with another profile than the scene's.
@@ -212,23 +221,6 @@ fn memory(material: &scene::Material) -> Memory {
     match material.memory {
         scene::Memory::Exponential => Memory::Exponential,
         scene::Memory::BackwardEuler => Memory::BackwardEuler,
-    }
-}
-
-/// Under periodic sides every profile repeats with the layer's period.
-fn profile(scene: &Scene) -> Box<dyn Profile> {
-    let period = (scene.layer.sides == scene::Sides::Periodic).then_some(scene.layer.width);
-    fn repeat<P: Profile + 'static>(profile: P, centre: f64, period: Option<f64>) -> Box<dyn Profile> {
-        match period {
-            Some(period) => Box::new(Repeated { profile, centre, period }),
-            None => Box::new(profile),
-        }
-    }
-    match scene.indenter {
-        scene::Indenter::Harmonic { amplitude, wavelength } => Box::new(Harmonic { amplitude, wavelength }),
-        scene::Indenter::Parabola { radius, centre } => repeat(Parabola { radius, centre }, centre, period),
-        scene::Indenter::Circle { radius, centre } => repeat(Circle { radius, centre }, centre, period),
-        scene::Indenter::Wedge { slope, centre } => repeat(Wedge { slope, centre }, centre, period),
     }
 }
 

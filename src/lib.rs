@@ -5,6 +5,7 @@ pub mod cli;
 pub mod composition;
 pub mod element;
 pub mod error;
+pub mod expression;
 pub mod friction;
 pub mod interface;
 pub mod loading;

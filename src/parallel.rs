@@ -31,6 +31,20 @@ where
     String::from_utf8(bytes).map_err(|_| Error::Internal("a text was garbled on its way to another rank".into()))
 }
 
+/// Gives every rank the numbers that `make` returns on rank 0, or its error. Collective.
+pub fn share_numbers<C>(comm: &C, make: impl FnOnce() -> Result<Vec<f64>>) -> Result<Vec<f64>>
+where
+    C: Communicator + CommunicatorCollectives,
+{
+    let mine = if comm.rank() == 0 { make() } else { Ok(Vec::new()) };
+    let mut numbers = agree(comm, mine)?;
+    let mut length = numbers.len();
+    comm.process_at_rank(0).broadcast_into(&mut length);
+    numbers.resize(length, 0.0);
+    comm.process_at_rank(0).broadcast_into(&mut numbers[..]);
+    Ok(numbers)
+}
+
 /// Gives every rank the bytes of rank `root`. Collective.
 pub fn broadcast<C: Communicator + CommunicatorCollectives>(comm: &C, root: i32, bytes: &mut Vec<u8>) {
     let mut length = bytes.len();

@@ -83,6 +83,23 @@ fn the_paper_s_scene_is_read_as_written() {
     assert_eq!(scene.output.bulk_at, ["indent", "slide"].map(|name| When::PhaseEnd(name.to_owned())));
 }
 
+/// The penalty from a tolerance: that of a half-plane under the wave of two cells, or of the layer under the mean
+/// pressure where it hardly changes its volume; both by hand.
+#[test]
+fn a_tolerance_is_a_penalty() {
+    let penalty = |overrides: &[&str]| read_with(SMALLEST, overrides).unwrap().contact.penalty;
+    let tolerance = "contact={ tolerance = 1e-2 }";
+    // G = 1 Pa, dx = 0.5 m: C = 0.7 * 0.5 / pi m/Pa.
+    let wave = std::f64::consts::PI / (0.7 * 0.5) / 1e-2;
+    let set = [tolerance, "material={ shear_modulus = 1, poisson_ratio = 0.3 }"];
+    assert!((penalty(&set) / wave - 1.0).abs() < 1e-14);
+    // nu = 0.49, depth 1 m: C = 0.02 / (2 * 0.51) m/Pa.
+    let set = [tolerance, "material={ shear_modulus = 1, poisson_ratio = 0.49 }"];
+    assert!((penalty(&set) * 1e-2 * 0.02 / 1.02 - 1.0).abs() < 1e-12);
+    let scene = read_with(SMALLEST, &set).unwrap();
+    assert!((added_compliance(scene.contact.penalty, &scene.layer, &scene.material) - 1e-2).abs() < 1e-15);
+}
+
 #[test]
 fn unknowns_are_the_displacements_that_nothing_holds() {
     for (sides, unknowns) in [("free", 30), ("roller", 24), ("fixed", 18), ("periodic", 24)] {
@@ -155,6 +172,22 @@ fn no_key_is_ignored() {
         ("indenter", "profile = \"wedge\", slope = 1, centre = true", "centre"),
         ("indenter", "profile = \"circle\", radius = true, centre = 1", "radius"),
         ("indenter", "profile = \"circle\", radius = 1, centre = true", "centre"),
+        ("indenter", "profile = \"expression\", formula = true", "formula"),
+        ("indenter", "profile = \"sampled\", file = true, extend = \"error\"", "file"),
+        ("indenter", "profile = \"sampled\", file = \"a\", extend = true", "extend"),
+        ("indenter", "profile = \"sampled\", file = \"a\", extend = \"periodic\", period = true", "period"),
+        ("indenter", "profile = \"rough\", hurst = true", "hurst"),
+        ("indenter", "profile = \"rough\", hurst = 1, rms_slope = true", "rms_slope"),
+        ("indenter", "profile = \"rough\", hurst = 1, rms_height = true", "rms_height"),
+        ("indenter", "profile = \"rough\", hurst = 1, rms_slope = 1, shortest = true", "shortest"),
+        ("indenter", "profile = \"rough\", hurst = 1, rms_slope = 1, shortest = 1, longest = true", "longest"),
+        (
+            "indenter",
+            "profile = \"rough\", hurst = 1, rms_slope = 1, shortest = 1, longest = 1, period = true",
+            "period",
+        ),
+        ("indenter", "profile = \"rough\", hurst = 1, rms_slope = 1, shortest = 1, longest = 1, seed = true", "seed"),
+        ("contact", "tolerance = true", "tolerance"),
         ("phase.phase-1.tangential", "amplitude = true, cycles = 1", "amplitude"),
         ("phase.phase-1.tangential", "amplitude = 1, cycles = true", "cycles"),
     ] {
@@ -233,6 +266,10 @@ impl Random {
         let phases: Vec<Phase> = (0..count).map(|index| self.phase(index)).collect();
         let radius = self.positive();
         let centre = self.unit() - 0.5;
+        let [hurst, seed] = [self.unit(), self.unit()];
+        let rms = self.of(&[Rms::RmsSlope(radius), Rms::RmsHeight(radius)]);
+        let file = self.of(&["a.txt", "../é \"b\"/c.csv", "/abs/d"]).to_owned();
+        let period = self.of(&[None, Some(wavelength)]);
         let friction =
             Friction::CoulombTanh { coefficient: 10.0 * self.unit(), regularisation: 1e-12 * self.positive() };
         let ends = phases.iter().take(2).map(|phase| When::PhaseEnd(phase.name.clone()));
@@ -258,6 +295,16 @@ impl Random {
                 Indenter::Parabola { radius, centre },
                 Indenter::Circle { radius, centre },
                 Indenter::Wedge { slope: radius, centre },
+                Indenter::Expression { formula: "5e-4*(1-cos(2*pi*x))".to_owned() },
+                Indenter::Sampled { file, extend: Extend::Periodic, period },
+                Indenter::Rough {
+                    hurst,
+                    rms,
+                    shortest: 0.1 * wavelength,
+                    longest: 0.5 * wavelength,
+                    period: wavelength,
+                    seed: (seed * 1e18) as u64,
+                },
             ]),
             contact: Contact {
                 penalty: 1e200 * self.positive(),

@@ -149,7 +149,7 @@ fn profile_fails(world: &SimpleCommunicator, scene: &Scene) {
     let times = [0.25, 0.5, 0.75, 1.0, 1.25, 1.3125, 1.4375, 1.5, 1.75, 2.0];
     assert_eq!(met.times, times);
 
-    let mut problem = composition::build(world, scene).unwrap();
+    let mut problem = composition::build(world, scene, Path::new("sliding.toml")).unwrap();
     problem.phases = stepped(problem.phases, &times);
     assert_same(&met, &run(world, problem));
 }
@@ -157,12 +157,12 @@ fn profile_fails(world: &SimpleCommunicator, scene: &Scene) {
 /// Newton's method is allowed so few iterations that some steps fail half way; then all steps that were accepted are
 /// planned in a run that may take as many as it likes.
 fn newton_fails(world: &SimpleCommunicator, scene: &Scene) {
-    let mut problem = composition::build(world, scene).unwrap();
+    let mut problem = composition::build(world, scene, Path::new("sliding.toml")).unwrap();
     problem.settings.max_newton = 4;
     let met = run(world, problem);
     assert!(met.times.len() > 8, "no step was cut: {:?}", met.times);
 
-    let mut problem = composition::build(world, scene).unwrap();
+    let mut problem = composition::build(world, scene, Path::new("sliding.toml")).unwrap();
     problem.phases = stepped(problem.phases, &met.times);
     assert_same(&met, &run(world, problem));
 }

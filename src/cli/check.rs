@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{is_first_process, summary};
+use super::{is_first_process, profile, summary};
+use crate::composition;
 use crate::error::{Error, Result};
 use crate::scene::{self, Source};
 
@@ -23,9 +24,11 @@ pub fn run(arguments: &CheckArguments) -> Result<()> {
     let file = &arguments.scene;
     let text = std::fs::read_to_string(file).map_err(|error| Error::file(file, format!("cannot be read: {error}")))?;
     let scene = scene::read(&text, &Source { file: file.clone(), overrides: arguments.set.clone() })?;
+    let shape = composition::shape(&scene, file, &composition::elevations(&scene, file)?)?;
     if is_first_process() {
         println!("{}", scene.to_toml().trim_end());
-        println!("\n{}", summary::plan(&scene));
+        println!("\n{}", profile::describe(&scene, &shape));
+        println!("{}", summary::plan(&scene));
     }
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 mod check;
 mod fit;
+mod profile;
 mod progress;
 mod record;
 mod run;

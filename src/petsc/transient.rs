@@ -29,8 +29,6 @@ pub struct Accepted {
     pub step: Step,
     /// Newton iterations it took, those of rejected attempts included.
     pub newton: usize,
-    /// How often it was cut before it was accepted.
-    pub cuts: usize,
 }
 
 /// What follows an accepted step.
@@ -43,8 +41,8 @@ pub enum Next {
         now: f64,
         /// s
         dt: f64,
-        /// How often it may be cut (by four each time) before the solve fails.
-        max_cuts: usize,
+        /// How often it may be cut by four before the solve fails.
+        cuts: usize,
     },
     /// The end.
     Stop,
@@ -105,7 +103,7 @@ pub struct Settings {
     pub linear: Linear,
     /// Newton iterations per attempt before the step is cut.
     pub max_newton: usize,
-    /// How often the first step may be cut (by four each time) before the solve fails; see [`Next::Step`].
+    /// How often the first step may be cut by four before the solve fails.
     pub max_cuts: usize,
 }
 
@@ -121,8 +119,6 @@ struct Context<'a, P> {
     problem: &'a mut P,
     step: Step,
     newton: usize,
-    /// Steps cut since TS began.
-    cuts: i32,
     error: Option<Error>,
 }
 
@@ -142,16 +138,17 @@ impl Integrator {
             check(ffi::TSSetMaxTime(ts, f64::MAX))?;
             check(ffi::TSSetMaxSteps(ts, i32::MAX - 1))?;
             check(ffi::TSSetMaxSNESFailures(ts, -1))?;
-            check(ffi::TSSetMaxStepRejections(ts, settings.max_cuts as i32))?;
-            // A step that fails for good is a converged reason to be read, not an error of PETSc.
             check(ffi::TSSetErrorIfStepFails(ts, ffi::PetscBool_PETSC_FALSE))?;
+            check(ffi::TSSetMaxStepRejections(ts, settings.max_cuts as i32))?;
             let mut adapt = null_mut();
             check(ffi::TSGetAdapt(ts, &mut adapt))?;
             check(ffi::TSAdaptSetType(adapt, c"none".as_ptr()))?;
             check(ffi::TSGetSNES(ts, &mut snes))?;
             check(ffi::SNESSetTolerances(snes, 0.0, 0.0, 0.0, settings.max_newton as i32, -1))?;
             check(ffi::SNESGetLineSearch(snes, &mut search))?;
-            check(ffi::SNESLineSearchSetType(search, c"bt".as_ptr()))?;
+            // Backtracking on the norm stalls where friction turns between stick and slip: the norm must rise before it
+            // falls. The minimiser along the step does not.
+            check(ffi::SNESLineSearchSetType(search, c"l2".as_ptr()))?;
             check(ffi::SNESGetKSP(snes, &mut ksp))?;
             check(ffi::KSPGetPC(ksp, &mut pc))?;
             let (method, preconditioner) = match settings.linear {
@@ -183,7 +180,7 @@ impl Integrator {
         u: &mut Vector,
         start: Step,
     ) -> Result<()> {
-        let mut context = Context { problem, step: start, newton: 0, cuts: 0, error: None };
+        let mut context = Context { problem, step: start, newton: 0, error: None };
         let pointer = (&raw mut context).cast::<c_void>();
         let (ts, mut snes, mut reason) = (self.ts, null_mut(), 0);
         // SAFETY: `context` outlives TSSolve, the only call that runs the callbacks; PETSc gives each callback the
@@ -365,23 +362,12 @@ unsafe extern "C" fn post_step<P: Implicit>(ts: ffi::TS) -> ffi::PetscErrorCode 
         guarded::<P>(pointer, |context| {
             let mut u = null_mut();
             check(ffi::TSGetSolution(ts, &mut u))?;
-            let (mut reason, mut cuts) = (0, 0);
-            check(ffi::TSGetConvergedReason(ts, &mut reason))?;
-            if reason < 0 {
-                // TS also comes here after a step that failed for good.
-                return Ok(());
-            }
-            check(ffi::TSGetStepRejections(ts, &mut cuts))?;
-            let accepted = Accepted {
-                step: context.step,
-                newton: std::mem::take(&mut context.newton),
-                cuts: (cuts - std::mem::replace(&mut context.cuts, cuts)) as usize,
-            };
+            let accepted = Accepted { step: context.step, newton: std::mem::take(&mut context.newton) };
             match context.problem.accepted(accepted, &Vector::borrow(u))? {
-                Next::Step { now, dt, max_cuts } => {
+                Next::Step { now, dt, cuts } => {
                     check(ffi::TSSetTime(ts, now))?;
-                    check(ffi::TSSetTimeStep(ts, dt))?;
-                    check(ffi::TSSetMaxStepRejections(ts, max_cuts as i32))
+                    check(ffi::TSSetMaxStepRejections(ts, cuts as i32))?;
+                    check(ffi::TSSetTimeStep(ts, dt))
                 }
                 Next::Stop => check(ffi::TSSetConvergedReason(ts, ffi::TSConvergedReason_TS_CONVERGED_USER)),
             }

@@ -4,8 +4,10 @@
 //! its field states, because [`read`] refuses a file that says otherwise.
 
 mod checks;
+mod indenter;
 mod keys;
 mod overrides;
+mod penalty;
 mod read;
 mod resolved;
 
@@ -13,7 +15,10 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+pub use checks::whole_periods;
+pub use indenter::{Extend, Indenter, Rms};
 pub use overrides::set;
+pub use penalty::{added_compliance, penalty_for};
 pub use read::{from_table, parse, read};
 
 /// One scene: the layer, its material, the indenter, the contact, the loading history, and what to keep of it.
@@ -115,44 +120,10 @@ pub enum Memory {
     BackwardEuler,
 }
 
-/// The rigid profile h(x), m, lowest at 0; it moves as h(x - s(t)).
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(tag = "profile", rename_all = "lowercase")]
-pub enum Indenter {
-    /// h = amplitude (1 - cos(2 pi x / wavelength)); both > 0.
-    Harmonic {
-        /// m
-        amplitude: f64,
-        /// m
-        wavelength: f64,
-    },
-    /// h = (x - centre)^2 / (2 radius); radius > 0.
-    Parabola {
-        /// m
-        radius: f64,
-        /// m
-        centre: f64,
-    },
-    /// The exact arc of a circle; radius > 0.
-    Circle {
-        /// m
-        radius: f64,
-        /// m
-        centre: f64,
-    },
-    /// h = slope |x - centre|; slope > 0.
-    Wedge {
-        /// -
-        slope: f64,
-        /// m
-        centre: f64,
-    },
-}
-
 /// How non-penetration is enforced.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Contact {
-    /// Pa/m, > 0: p = -penalty * gap where gap < 0.
+    /// Pa/m, > 0: p = -penalty * gap where gap < 0; always resolved (from `tolerance` where the file says that).
     pub penalty: f64,
     /// Where the interface element evaluates the laws.
     pub quadrature: Quadrature,

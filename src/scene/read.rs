@@ -1,6 +1,7 @@
 //! The keys of a scene: which there are, what each accepts, and what it becomes. What one key has to do with another
 //! is in `checks`.
 
+mod indenter;
 pub(super) mod phase;
 
 use std::path::Path;
@@ -9,8 +10,8 @@ use toml::Table;
 
 use super::keys::{self, Quantity, Section};
 use super::{
-    Arm, Contact, Friction, Indenter, Layer, Material, Memory, Output, PoissonRule, Quadrature, Scene, Sides, Solver,
-    Source, Strategy, When, checks, overrides,
+    Arm, Contact, Friction, Layer, Material, Memory, Output, PoissonRule, Quadrature, Scene, Sides, Solver, Source,
+    Strategy, When, checks, overrides, penalty_for,
 };
 use crate::error::{Error, Result};
 
@@ -45,16 +46,19 @@ pub fn from_table(table: &Table, file: &Path) -> Result<Scene> {
         ("reference_temperature", NO_TEMPERATURE),
     ])?;
     root.only(&["title", "layer", "material", "indenter", "contact", "friction", "phase", "solver", "output"])?;
+    let title = title(&root, file)?;
+    let layer = layer(&root.section("layer")?)?;
+    let material = material(&root)?;
     let mut scene = Scene {
-        title: title(&root, file)?,
-        layer: layer(&root.section("layer")?)?,
-        material: material(&root)?,
-        indenter: indenter(&root.section("indenter")?)?,
-        contact: contact(&root.section("contact")?)?,
+        indenter: indenter::read(&root.section("indenter")?)?,
+        contact: contact(&root.section("contact")?, &layer, &material)?,
         friction: root.optional_section("friction")?.as_ref().map(friction).transpose()?,
         phases: phase::read_all(&root)?,
         solver: solver(root.optional_section("solver")?.as_ref())?,
         output: output(root.optional_section("output")?.as_ref())?,
+        title,
+        layer,
+        material,
     };
     checks::all(&scene, file)?;
     scene.clamp_moments();
@@ -167,63 +171,34 @@ fn arms(section: &Section) -> Result<Vec<Arm>> {
     Ok(arms)
 }
 
-fn indenter(section: &Section) -> Result<Indenter> {
-    #[derive(Clone, Copy)]
-    enum Profile {
-        Harmonic,
-        Parabola,
-        Circle,
-        Wedge,
-    }
-    const PROFILES: [(&str, Profile); 4] = [
-        ("harmonic", Profile::Harmonic),
-        ("parabola", Profile::Parabola),
-        ("circle", Profile::Circle),
-        ("wedge", Profile::Wedge),
-    ];
-    const LATER: [&str; 3] = ["expression", "sampled", "rough"];
-    const LENGTH: Quantity = Quantity::positive("a positive length in m");
-    const POSITION: Quantity = Quantity::any("a position in m");
-    const SLOPE: Quantity = Quantity::positive("a positive slope");
-
-    // The profile decides which keys there are; where it is absent, perhaps it is misspelt.
-    if !section.has("profile") {
-        section.only(&["profile", "amplitude", "wavelength", "radius", "centre", "slope"])?;
-    }
-    match section.choice("profile", &PROFILES, &LATER)? {
-        Profile::Harmonic => {
-            section.only(&["profile", "amplitude", "wavelength"])?;
-            let amplitude = section.number("amplitude", LENGTH)?;
-            Ok(Indenter::Harmonic { amplitude, wavelength: section.number("wavelength", LENGTH)? })
-        }
-        Profile::Parabola => {
-            section.only(&["profile", "radius", "centre"])?;
-            let radius = section.number("radius", LENGTH)?;
-            Ok(Indenter::Parabola { radius, centre: section.number("centre", POSITION)? })
-        }
-        Profile::Circle => {
-            section.only(&["profile", "radius", "centre"])?;
-            let radius = section.number("radius", LENGTH)?;
-            Ok(Indenter::Circle { radius, centre: section.number("centre", POSITION)? })
-        }
-        Profile::Wedge => {
-            section.only(&["profile", "slope", "centre"])?;
-            let slope = section.number("slope", SLOPE)?;
-            Ok(Indenter::Wedge { slope, centre: section.number("centre", POSITION)? })
-        }
-    }
-}
-
-fn contact(section: &Section) -> Result<Contact> {
-    const PENALTY: Quantity = Quantity::positive("a positive stiffness in Pa/m");
+fn contact(section: &Section, layer: &Layer, material: &Material) -> Result<Contact> {
     const QUADRATURES: [(&str, Quadrature); 2] = [("nodal", Quadrature::Nodal), ("gauss", Quadrature::Gauss)];
 
-    section.later(&[("tolerance", "give penalty"), ("method", "remove it: contact is enforced by penalty")])?;
-    section.only(&["penalty", "quadrature"])?;
+    section.later(&[("method", "remove it: contact is enforced by penalty")])?;
+    section.only(&["penalty", "tolerance", "quadrature"])?;
     Ok(Contact {
-        penalty: section.number("penalty", PENALTY)?,
+        penalty: penalty(section, layer, material)?,
         quadrature: section.optional_choice("quadrature", &QUADRATURES, &[])?.unwrap_or(Quadrature::Nodal),
     })
+}
+
+/// The penalty, given as itself or as the compliance that it may add.
+fn penalty(section: &Section, layer: &Layer, material: &Material) -> Result<f64> {
+    const PENALTY: Quantity = Quantity::positive("a positive stiffness in Pa/m");
+    const TOLERANCE: Quantity =
+        Quantity { what: "a relative tolerance above 0 and below 1", accepts: |value| value > 0.0 && value < 1.0 };
+
+    let penalty = section.optional_number("penalty", PENALTY)?;
+    let tolerance = section.optional_number("tolerance", TOLERANCE)?;
+    match (penalty, tolerance) {
+        (Some(_), Some(_)) => Err(section.error("tolerance", "give penalty or tolerance, not both")),
+        (Some(penalty), None) => Ok(penalty),
+        (None, Some(tolerance)) => match penalty_for(tolerance, layer, material) {
+            penalty if penalty.is_finite() && penalty > 0.0 => Ok(penalty),
+            penalty => Err(section.error("tolerance", format!("gives a penalty of {penalty:?} Pa/m; give another"))),
+        },
+        (None, None) => Err(section.missing("penalty", "it in Pa/m, or tolerance")),
+    }
 }
 
 fn friction(section: &Section) -> Result<Friction> {

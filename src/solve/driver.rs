@@ -14,19 +14,15 @@ use crate::petsc::{Accepted, Implicit, Integrator, Matrix, Next, Settings, Step,
 pub struct Limits {
     /// Newton iterations per attempt.
     pub max_newton: usize,
-    /// How often in succession a step may be cut by four.
+    /// How often a planned step may be cut by four: its pieces are no shorter than 4^-max_cuts of it.
     pub max_cuts: usize,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { max_newton: 30, max_cuts: 8 }
+        Self { max_newton: 30, max_cuts: 5 }
     }
 }
-
-/// How often a planned step may be cut, all its pieces together: pieces grow back by two, so that one which needs a 32nd
-/// of the planned step throughout is cut about twenty times.
-const MOST_CUTS: usize = 40;
 
 /// A problem on its way through its phases.
 pub struct Driver<'a> {
@@ -38,8 +34,6 @@ pub struct Driver<'a> {
     /// The end of the last accepted step, s.
     now: f64,
     max_cuts: usize,
-    /// Cuts of the planned step so far.
-    cuts: usize,
     counts: Counts,
 }
 
@@ -63,17 +57,7 @@ pub struct Counts {
 impl<'a> Driver<'a> {
     /// A driver at the beginning of the history.
     pub fn new(problem: &'a mut dyn TransientProblem, observer: &'a mut dyn Observer, phases: &'a [Phase]) -> Self {
-        Self {
-            problem,
-            observer,
-            phases,
-            phase: 0,
-            target: 0,
-            now: 0.0,
-            max_cuts: 0,
-            cuts: 0,
-            counts: Counts::default(),
-        }
+        Self { problem, observer, phases, phase: 0, target: 0, now: 0.0, max_cuts: 0, counts: Counts::default() }
     }
 
     /// Runs the whole history from rest; `u` ends as the last accepted state.
@@ -88,9 +72,9 @@ impl<'a> Driver<'a> {
         u: &mut Vector,
     ) -> Result<()> {
         let Some(first) = self.phases.first() else { return Ok(()) };
+        self.max_cuts = settings.max_cuts;
         let start = Step { t: first.steps[0].time, dt: first.steps[0].dt };
         self.problem.begin(first.clone());
-        self.max_cuts = settings.max_cuts;
         let begun = Instant::now();
         let outcome = Integrator::new(comm, settings)?.solve(self, tangent, u, start);
         self.counts.total = begun.elapsed();
@@ -107,15 +91,14 @@ impl<'a> Driver<'a> {
 
     /// The step after one that ended at `now` and was `dt` long.
     fn next(&mut self, dt: f64) -> Next {
-        let max_cuts = self.max_cuts;
         let target = self.phases[self.phase].steps[self.target];
         let remaining = target.time - self.now;
         if remaining > 1e-9 * target.dt {
             // Inside a planned step that was cut: grow back by two.
-            let left = MOST_CUTS.saturating_sub(self.cuts);
-            return Next::Step { now: self.now, dt: remaining.min(2.0 * dt), max_cuts: max_cuts.min(left) };
+            let dt = remaining.min(2.0 * dt);
+            let cuts = self.max_cuts as f64 - (target.dt / dt).log(4.0);
+            return Next::Step { now: self.now, dt, cuts: (cuts + 1e-6).max(0.0) as usize };
         }
-        self.cuts = 0;
         self.now = target.time;
         self.target += 1;
         if self.target == self.phases[self.phase].steps.len() {
@@ -126,7 +109,7 @@ impl<'a> Driver<'a> {
                 None => return Next::Stop,
             }
         }
-        Next::Step { now: self.now, dt: self.phases[self.phase].steps[self.target].dt, max_cuts }
+        Next::Step { now: self.now, dt: self.phases[self.phase].steps[self.target].dt, cuts: self.max_cuts }
     }
 }
 
@@ -162,7 +145,6 @@ impl Implicit for Driver<'_> {
         let phase = self.phase;
         let target = self.phases[phase].steps[self.target];
         self.now = accepted.step.t;
-        self.cuts += accepted.cuts;
         let next = self.next(accepted.step.dt);
         let report = Report {
             phase,
