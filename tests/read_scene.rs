@@ -1,7 +1,6 @@
 //! Good scenes: what is read, what is resolved, and that what is resolved can be read again.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use std::path::PathBuf;
