@@ -118,9 +118,10 @@ impl TransientProblem for Condensed {
             Some(Relaxation { arms, series }) => f.copy_from(arms.trial((0, series), step, u, rate)?)?,
             None => f.copy_from(u)?,
         }
+        let mut values = f.view_mut()?;
         if let Some(compliance) = &self.compliance {
             let forces = self.face.residual.iter().enumerate().flat_map(|(i, r)| [(2 * i, r.x), (2 * i + 1, r.y)]);
-            compliance.add_displacements(forces, &mut f.view_mut()?);
+            compliance.add_displacements(forces, &mut values);
         }
         Ok(())
     }
@@ -147,19 +148,20 @@ impl TransientProblem for Condensed {
     fn multiply(&mut self, v: &Vector, product: &mut Vector) -> Result<()> {
         product.copy_from(v)?;
         product.scale(self.secant)?;
+        let (v, mut product) = (v.view()?, product.view_mut()?);
         let Some(compliance) = &self.compliance else { return Ok(()) };
-        let v = v.view()?;
-        compliance.add_displacements(self.columns.multiply(|place| v[place]), &mut product.view_mut()?);
+        compliance.add_displacements(self.columns.multiply(|place| v[place]), &mut product);
         Ok(())
     }
 
     fn solve(&mut self, b: &Vector, x: &mut Vector) -> Result<()> {
         self.used += 1;
+        let mut x = x.view_mut()?;
         let Some(compliance) = &self.compliance else { return Ok(()) };
         match &self.factor {
-            Some(factor) => factor.solve(compliance, &b.view()?, &mut x.view_mut()?),
+            Some(factor) => factor.solve(compliance, &b.view()?, &mut x),
             None => {
-                x.view_mut()?.fill(f64::NAN);
+                x.fill(f64::NAN);
                 Ok(())
             }
         }
@@ -167,8 +169,9 @@ impl TransientProblem for Condensed {
 
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
         let carried = self.face.carried(step)?;
+        // On all ranks, here and below: PETSc keeps norms until it sees a vector written to, on each rank for itself.
+        let mut values = u.view_mut()?;
         if self.compliance.is_some() {
-            let mut values = u.view_mut()?;
             carried.into_iter().for_each(|(node, distance)| values[2 * node] += distance);
         }
         Ok(())
