@@ -209,7 +209,7 @@ fn check_prints_the_resolved_scene() {
         let output = command.args(["check", "scene.toml", "--set", "layer.cells=[4,6]"]).current_dir(run.directory());
         let text = String::from_utf8(output.output().unwrap().stdout).unwrap();
         let resolved: String =
-            text.lines().take_while(|line| !line.starts_with("modelled:")).map(|l| format!("{l}\n")).collect();
+            text.lines().take_while(|line| !line.starts_with("profile:")).map(|l| format!("{l}\n")).collect();
         let resolved: toml::Table = resolved.parse().unwrap();
         assert_eq!(resolved["layer"]["cells"][1].as_integer(), Some(6));
         assert_eq!(text.matches("modelled:  ").count(), 2, "once each, said and not said: {text}");

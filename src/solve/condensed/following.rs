@@ -65,6 +65,10 @@ impl Backing for Following {
         self.softness
     }
 
+    fn takes_forces(&self) -> bool {
+        false
+    }
+
     fn commit(&mut self, step: Step, u: &Vector, _residual: &Residual) -> Result<()> {
         self.relaxation.as_mut().map_or(Ok(()), |relaxation| relaxation.arms.commit(step, u))
     }

@@ -43,6 +43,8 @@ pub trait Backing {
     fn compliance(&self) -> Option<&Compliance>;
     /// The largest entry of C, m per N/m, on all ranks.
     fn softness(&self) -> f64;
+    /// Whether [`Self::commit`] needs the contact forces, and [`Self::free`] no rate.
+    fn takes_forces(&self) -> bool;
     /// Takes the memory to the end of an accepted step that ends at `u` under the contact forces -`residual`.
     fn commit(&mut self, step: Step, u: &Vector, residual: &Residual) -> Result<()>;
     /// The bulk fields at the accepted state `u`; `face` brings vectors of the face to all ranks.
@@ -87,6 +89,36 @@ impl<B: Backing> Condensed<B> {
     }
 }
 
+impl<B: Backing> Condensed<B> {
+    /// f += C R. On all ranks: PETSc keeps norms until it sees a vector written to, on each rank for itself.
+    fn add_contact(&self, f: &mut Vector) -> Result<()> {
+        let mut values = f.view_mut()?;
+        if let Some(compliance) = self.backing.compliance() {
+            let forces = self.face.residual.iter().enumerate().flat_map(|(i, r)| [(2 * i, r.x), (2 * i + 1, r.y)]);
+            compliance.add_displacements(forces, &mut values);
+        }
+        Ok(())
+    }
+
+    /// Brings the contact forces of the accepted state to balance with its displacements: R + T d with
+    /// (c 1 + C T) d = -G. A stiff penalty turns round-off in the gap into noise of the forces, which d takes out; the
+    /// displacements, whose digits are good, stay.
+    fn refine_forces(&mut self, step: Step, u: &Vector) -> Result<()> {
+        let (mut imbalance, mut correction) = (u.like()?, u.like()?);
+        // A backing that takes forces does not ask for the rate.
+        self.backing.free(step, u, u, &mut imbalance)?;
+        self.add_contact(&mut imbalance)?;
+        if self.factor.is_some() {
+            self.solve(&imbalance, &mut correction)?;
+            let d = correction.view()?;
+            for (row, force) in self.columns.multiply(|place| -d[place]) {
+                self.face.residual[row / 2][row % 2] += force;
+            }
+        }
+        Ok(())
+    }
+}
+
 impl<B: Backing> TransientProblem for Condensed<B> {
     fn begin(&mut self, phase: Phase) {
         self.face.begin(phase);
@@ -97,11 +129,7 @@ impl<B: Backing> TransientProblem for Condensed<B> {
         self.face.try_residual(step, u, rate)?;
         self.face.set_scale(self.backing.softness() * self.face.contact_norm());
         self.backing.free(step, u, rate, f)?;
-        if let Some(compliance) = self.backing.compliance() {
-            let forces = self.face.residual.iter().enumerate().flat_map(|(i, r)| [(2 * i, r.x), (2 * i + 1, r.y)]);
-            compliance.add_displacements(forces, &mut f.view_mut()?);
-        }
-        Ok(())
+        self.add_contact(f)
     }
 
     fn tangent(&mut self, step: Step, u: &Vector, rate: &Vector, _tangent: &mut Matrix) -> Result<()> {
@@ -125,19 +153,20 @@ impl<B: Backing> TransientProblem for Condensed<B> {
     fn multiply(&mut self, v: &Vector, product: &mut Vector) -> Result<()> {
         product.copy_from(v)?;
         product.scale(self.backing.secant())?;
-        let Some(compliance) = self.backing.compliance() else { return Ok(()) };
-        let v = v.view()?;
-        compliance.add_displacements(self.columns.multiply(|place| v[place]), &mut product.view_mut()?);
+        let (v, mut product) = (v.view()?, product.view_mut()?);
+        if let Some(compliance) = self.backing.compliance() {
+            compliance.add_displacements(self.columns.multiply(|place| v[place]), &mut product);
+        }
         Ok(())
     }
 
     fn solve(&mut self, b: &Vector, x: &mut Vector) -> Result<()> {
         self.used += 1;
-        let Some(compliance) = self.backing.compliance() else { return Ok(()) };
-        match &self.factor {
-            Some(factor) => factor.solve(compliance, &b.view()?, &mut x.view_mut()?),
-            None => {
-                x.view_mut()?.fill(f64::NAN);
+        let (b, mut x) = (b.view()?, x.view_mut()?);
+        match (&self.factor, self.backing.compliance()) {
+            (Some(factor), Some(compliance)) => factor.solve(compliance, &b, &mut x),
+            _ => {
+                x.fill(f64::NAN);
                 Ok(())
             }
         }
@@ -159,7 +188,10 @@ impl<B: Backing> TransientProblem for Condensed<B> {
 
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {
         self.face.commit(step, u)?;
-        self.face.accepted_residual()?;
+        if self.backing.takes_forces() {
+            self.face.accepted_residual()?;
+            self.refine_forces(step, u)?;
+        }
         self.backing.commit(step, u, &self.face.residual)
     }
 

@@ -104,8 +104,10 @@ impl Backing for Remembering {
 
     fn free(&mut self, _step: Step, u: &Vector, _rate: &Vector, y: &mut Vector) -> Result<()> {
         y.copy_from(u)?;
+        // On all ranks: PETSc keeps norms until it sees a vector written to, on each rank for itself.
+        let mut y = y.view_mut()?;
         if let Some(interior) = &self.interior {
-            for (y, free) in y.view_mut()?.iter_mut().zip(&interior.face) {
+            for (y, free) in y.iter_mut().zip(&interior.face) {
                 *y -= free;
             }
         }
@@ -122,6 +124,10 @@ impl Backing for Remembering {
 
     fn softness(&self) -> f64 {
         self.softness
+    }
+
+    fn takes_forces(&self) -> bool {
+        true
     }
 
     fn commit(&mut self, step: Step, _u: &Vector, residual: &Residual) -> Result<()> {
