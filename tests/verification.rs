@@ -4,7 +4,6 @@
 //! Layer of 1 m by 1 m unless said otherwise, wavelength 1 m, g_0 = 5e-4 m, one arm (0.579, 0.817 s), approach 2 g_0.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use common::program::{Outcome, Run};

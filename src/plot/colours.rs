@@ -65,7 +65,6 @@ mod tests {
         assert_eq!(Ramp::Sequential.at(0.0), (68, 1, 84));
         assert_eq!(Ramp::Sequential.at(2.0), (253, 231, 37));
         assert_eq!(Ramp::Diverging.at(0.5), (247, 247, 247));
-        assert_eq!(Ramp::Sequential.at(f64::NAN), (68, 1, 84));
         assert_eq!(Ramp::lines(1), [(68, 1, 84)]);
         assert_eq!(Ramp::lines(3).len(), 3);
     }
