@@ -16,4 +16,5 @@ pub mod petsc;
 pub mod profile;
 pub mod rheology;
 pub mod scene;
+pub mod snapshot;
 pub mod solve;

@@ -1,6 +1,9 @@
 //! The commands of `mpjr`, one module each.
 
+mod case;
 mod check;
+mod interrupt;
+mod origin;
 mod progress;
 mod record;
 mod run;
@@ -29,7 +32,7 @@ enum Command {
 }
 
 /// Reads the command line, does what it says, and returns the exit code: 0 done, 2 scene or command line wrong,
-/// 3 no convergence, 4 a file could not be read or written, 1 anything else.
+/// 3 no convergence, 4 a file could not be read or written, 5 stopped by a signal, 1 anything else.
 pub fn main() -> i32 {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,

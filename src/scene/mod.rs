@@ -4,6 +4,7 @@
 //! its field states, because [`read`] refuses a file that says otherwise.
 
 mod checks;
+mod differences;
 mod keys;
 mod overrides;
 mod read;
@@ -13,6 +14,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+pub use differences::differences;
 pub use overrides::set;
 pub use read::{from_table, parse, read};
 
@@ -239,6 +241,8 @@ pub struct Output {
     pub interface_every: usize,
     /// When bulk fields are written; empty = never.
     pub bulk_at: Vec<When>,
+    /// Steps between checkpoints; 0 = only on a signal.
+    pub checkpoint_every: usize,
 }
 
 /// A moment of the loading history.

@@ -23,6 +23,7 @@ use crate::interface::{Interface, Tangent};
 use crate::loading::Phase;
 use crate::mesh::Edge;
 use crate::petsc::{DenseLu, Gather, Matrix, Step, Vector, Verdict};
+use crate::snapshot::Snapshot;
 
 /// How the body relaxes as a whole.
 pub struct Relaxation {
@@ -177,6 +178,36 @@ impl TransientProblem for Condensed {
         self.face.commit(step, u)
     }
 
+    fn save(&mut self, u: &Vector, snapshot: &mut Snapshot) -> Result<()> {
+        let mut order = self.interior.face_order(u)?;
+        order.save("u", u, snapshot)?;
+        if let Some(relaxation) = &self.relaxation {
+            relaxation.arms.save(&mut order, snapshot)?;
+        }
+        self.face.save(snapshot);
+        snapshot.put("condensed", vec![self.secant, self.used as f64]);
+        if let Some(factor) = self.factor.as_ref().filter(|_| self.reuse) {
+            factor.save(snapshot);
+        }
+        Ok(())
+    }
+
+    fn restore(&mut self, snapshot: &Snapshot, u: &mut Vector) -> Result<()> {
+        let order = self.interior.face_order(u)?;
+        order.restore("u", u, snapshot)?;
+        if let Some(relaxation) = &mut self.relaxation {
+            relaxation.arms.restore(&order, snapshot, u)?;
+        }
+        self.face.restore(snapshot, u)?;
+        let [secant, used] = snapshot.numbers("condensed")?;
+        (self.secant, self.used) = (secant, used as usize);
+        self.factor = match &self.compliance {
+            Some(compliance) if self.reuse => Factor::restore(snapshot, compliance)?,
+            _ => None,
+        };
+        Ok(())
+    }
+
     fn contact(&mut self) -> Result<Contact<'_>> {
         Ok(self.face.contact())
     }
@@ -239,6 +270,34 @@ impl Factor {
             target[j] += secant;
         }
         Ok(Self { lu: DenseLu::new(order, matrix)?, columns, secant })
+    }
+
+    /// Adds what the factor was made from to a snapshot: later solves depend on it by their last digits.
+    fn save(&self, snapshot: &mut Snapshot) {
+        let SparseColumns { places, entries } = &self.columns;
+        let triplets = places.iter().zip(entries).flat_map(|(&place, entries)| {
+            entries.iter().flat_map(move |&(row, value)| [place as f64, row as f64, value])
+        });
+        snapshot.put("factor", std::iter::once(self.secant).chain(triplets).collect());
+    }
+
+    /// The factor that [`Self::save`] left; none if there was none.
+    fn restore(snapshot: &Snapshot, compliance: &Compliance) -> Result<Option<Self>> {
+        if !snapshot.has("factor") {
+            return Ok(None);
+        }
+        let Some((&secant, triplets)) = snapshot.get("factor")?.split_first() else { return Ok(None) };
+        let mut columns = SparseColumns::default();
+        for &[place, row, value] in triplets.as_chunks().0 {
+            if columns.places.last() != Some(&(place as usize)) {
+                columns.places.push(place as usize);
+                columns.entries.push(Vec::new());
+            }
+            if let Some(entries) = columns.entries.last_mut() {
+                entries.push((row as usize, value));
+            }
+        }
+        Ok(Self::new(compliance, columns, secant).ok())
     }
 
     /// x = (b - C T_B x_B) / c

@@ -8,6 +8,7 @@ use super::{Observer, Report, TransientProblem};
 use crate::error::{Error, Result};
 use crate::loading::Phase;
 use crate::petsc::{Accepted, Implicit, Integrator, Matrix, Next, Settings, Step, Vector, Verdict};
+use crate::snapshot::Snapshot;
 
 /// What the driver may do to get through a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,7 +34,35 @@ pub struct Driver<'a> {
     target: usize,
     /// The end of the last accepted step, s.
     now: f64,
+    /// The length of the next step, s; none = as planned.
+    dt: Option<f64>,
     counts: Counts,
+}
+
+/// Where a run stands between two steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Position {
+    /// Index of the phase of the next step.
+    pub phase: usize,
+    /// Index of the planned step within the phase.
+    pub target: usize,
+    /// The end of the last accepted step, s.
+    pub now: f64,
+    /// The length of the next step, s.
+    pub dt: f64,
+}
+
+impl Position {
+    /// Adds the position to a snapshot.
+    pub fn save(&self, snapshot: &mut Snapshot) {
+        snapshot.put("position", vec![self.phase as f64, self.target as f64, self.now, self.dt]);
+    }
+
+    /// The position that a snapshot holds.
+    pub fn restore(snapshot: &Snapshot) -> Result<Self> {
+        let [phase, target, now, dt] = snapshot.numbers("position")?;
+        Ok(Self { phase: phase as usize, target: target as usize, now, dt })
+    }
 }
 
 /// What a run took.
@@ -56,10 +85,17 @@ pub struct Counts {
 impl<'a> Driver<'a> {
     /// A driver at the beginning of the history.
     pub fn new(problem: &'a mut dyn TransientProblem, observer: &'a mut dyn Observer, phases: &'a [Phase]) -> Self {
-        Self { problem, observer, phases, phase: 0, target: 0, now: 0.0, counts: Counts::default() }
+        Self { problem, observer, phases, phase: 0, target: 0, now: 0.0, dt: None, counts: Counts::default() }
     }
 
-    /// Runs the whole history from rest; `u` ends as the last accepted state.
+    /// The same driver at a later position, where `counts` were counted before. The problem must have been restored
+    /// to the state there.
+    pub fn at(self, position: Position, counts: Counts) -> Self {
+        let Position { phase, target, now, dt } = position;
+        Self { phase, target, now, dt: Some(dt), counts, ..self }
+    }
+
+    /// Runs the rest of the history; `u` ends as the last accepted state.
     ///
     /// # Errors
     /// [`Error::Solver`] when a step fails after all cuts; what was accepted before has been observed.
@@ -70,9 +106,10 @@ impl<'a> Driver<'a> {
         tangent: &mut Matrix,
         u: &mut Vector,
     ) -> Result<()> {
-        let Some(first) = self.phases.first() else { return Ok(()) };
-        let start = Step { t: first.steps[0].time, dt: first.steps[0].dt };
-        self.problem.begin(first.clone());
+        let Some(phase) = self.phases.get(self.phase) else { return Ok(()) };
+        let Some(target) = phase.steps.get(self.target) else { return Ok(()) };
+        let start = (self.now, self.dt.unwrap_or(target.dt));
+        self.problem.begin(phase.clone());
         let begun = Instant::now();
         let outcome = Integrator::new(comm, settings)?.solve(self, tangent, u, start);
         self.counts.total = begun.elapsed();
@@ -142,19 +179,25 @@ impl Implicit for Driver<'_> {
         let target = self.phases[phase].steps[self.target];
         self.now = accepted.step.t;
         let next = self.next(accepted.step.dt);
+        let planned = self.now == target.time;
+        self.counts.steps += 1;
+        self.counts.pieces += usize::from(!planned);
+        self.counts.newton += accepted.newton;
         let report = Report {
             phase,
             time: self.now,
-            planned: self.now == target.time,
+            planned,
             phase_end: self.phase != phase,
-            bulk_output: target.bulk_output && self.now == target.time,
+            bulk_output: target.bulk_output && planned,
             newton: accepted.newton,
+            counts: self.counts,
+            next: match next {
+                Next::Step { now, dt } => Some(Position { phase: self.phase, target: self.target, now, dt }),
+                Next::Stop => None,
+            },
             problem: &mut *self.problem,
             u,
         };
-        self.counts.steps += 1;
-        self.counts.pieces += usize::from(!report.planned);
-        self.counts.newton += accepted.newton;
         let begun = Instant::now();
         self.observer.observe(report)?;
         self.counts.output += begun.elapsed();

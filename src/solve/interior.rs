@@ -8,6 +8,7 @@ use super::body::{Body, Moduli};
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::petsc::{Cholesky, Matrix, Vector};
+use crate::snapshot::NaturalOrder;
 
 /// A body whose interior follows its face: u_I = H u_G.
 pub struct Interior {
@@ -31,6 +32,13 @@ impl Interior {
     /// The interior of a body of instantaneous `moduli`; costs nothing until [`Self::fields`].
     pub fn new(comm: &SimpleCommunicator, mesh: Mesh, moduli: Moduli) -> Self {
         Self { comm: comm.duplicate(), mesh, moduli, recovery: None }
+    }
+
+    /// The order of the face's components, for vectors that rank 0 holds whole.
+    pub fn face_order(&self, layout: &Vector) -> Result<NaturalOrder> {
+        let length = 2 * self.mesh.face.unknown.len();
+        let entries: Vec<i32> = (0..length as i32).collect();
+        NaturalOrder::new(&self.comm, layout, &entries, if self.comm.rank() == 0 { 0 } else { length })
     }
 
     /// How often the interior was recovered: 0 or 1 factorisation.

@@ -1,5 +1,6 @@
 //! Shared by the integration tests; each uses a part of it.
 pub mod mpi;
+pub mod program;
 pub mod sample;
 
 use std::path::{Path, PathBuf};
