@@ -133,26 +133,33 @@ fn nothing_is_lost_by_twenty_kills() {
     }
 }
 
-/// A signal to one of the processes stops all within a step, with exit code 5; on as many ranks the run ends with the
-/// same bits, on another number with the same ten digits.
+/// A signal to one of the processes stops all within a step, with exit code 5; the run ends with the same numbers on
+/// as many ranks and on another number. Condensed, the same bits; with all unknowns on two ranks MUMPS adds in an order
+/// of its own each time, so that not even two runs that nothing befell have the same last digits.
 #[test]
 fn a_signal_to_one_rank_stops_all() {
     let directory = tempfile::tempdir().unwrap();
-    let scene = scene(directory.path(), 150, &bulk(), "tolerance = 1e-13\nstrategy = \"monolithic\"");
-    let (whole, stopped) = (directory.path().join("whole.h5"), directory.path().join("stopped.h5"));
-    output_of(&mut run(&mut mpjr_on(2), &scene, &whole));
-    for (signal, ranks) in [("TERM", 2), ("INT", 1)] {
-        let mut child = run(&mut mpjr_on(2), &scene, &stopped).stdout(Stdio::null()).spawn().unwrap();
-        wait_for(&mut child, &stopped, 4);
-        let rank = processes_of(&child).pop().unwrap();
-        assert!(Command::new("kill").args([&format!("-{signal}"), &rank]).status().unwrap().success());
-        assert_eq!(child.wait().unwrap().code(), Some(5));
-        let results = Results::open(&stopped).unwrap();
-        assert_eq!(results.text("status").unwrap(), "stopped");
-        assert!(results.history("time").unwrap().len() < 170);
-        drop(results);
-        output_of(run(&mut mpjr_on(ranks), &scene, &stopped).arg("--resume"));
-        assert_same(&whole, &stopped, if ranks == 2 { 0.0 } else { 1e-10 });
+    for (material, solver, within) in
+        [(ratio(), "", 0.0), (bulk(), "tolerance = 1e-13\nstrategy = \"monolithic\"", 1e-10)]
+    {
+        let scene = scene(directory.path(), 40, &material, solver);
+        let (whole, stopped) = (directory.path().join("whole.h5"), directory.path().join("stopped.h5"));
+        output_of(run(&mut mpjr(), &scene, &whole).args(["--set", "output.bulk_at=[]"]));
+        for (signal, ranks) in [("TERM", 2), ("INT", 1)] {
+            let mut program = run(&mut mpjr_on(2), &scene, &stopped);
+            program.args(["--set", "output.bulk_at=[]"]);
+            let mut child = program.stdout(Stdio::null()).spawn().unwrap();
+            wait_for(&mut child, &stopped, 4);
+            let rank = processes_of(&child).pop().unwrap();
+            assert!(Command::new("kill").args([&format!("-{signal}"), &rank]).status().unwrap().success());
+            assert_eq!(child.wait().unwrap().code(), Some(5));
+            let results = Results::open(&stopped).unwrap();
+            assert_eq!(results.text("status").unwrap(), "stopped");
+            assert!(results.history("time").unwrap().len() < 60);
+            drop(results);
+            output_of(run(&mut mpjr_on(ranks), &scene, &stopped).args(["--resume", "--set", "output.bulk_at=[]"]));
+            assert_same(&whole, &stopped, within);
+        }
     }
 }
 
@@ -208,7 +215,7 @@ fn what_cannot_be_resumed_is_refused() {
     let kept = std::fs::read(checkpoint::beside(&out)).unwrap();
     std::fs::write(checkpoint::beside(&out), &kept[..kept.len() / 2]).unwrap();
     let message = ends_with(&mut resume(&[]), 4);
-    assert!(message.contains("is not a checkpoint that can be read") && message.lines().count() == 1, "{message}");
+    assert!(message.contains("is not a whole checkpoint") && message.lines().count() == 1, "{message}");
     std::fs::remove_file(checkpoint::beside(&out)).unwrap();
     assert!(ends_with(&mut resume(&[]), 2).contains("before its first checkpoint"));
 }

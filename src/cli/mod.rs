@@ -8,6 +8,7 @@ mod progress;
 mod record;
 mod run;
 mod summary;
+mod sweep;
 
 use clap::{Parser, Subcommand};
 
@@ -27,6 +28,8 @@ struct Arguments {
 enum Command {
     /// Solve one scene and write its HDF5 file
     Run(run::RunArguments),
+    /// Run every case of a sweep; cases that are complete are not run again
+    Sweep(sweep::SweepArguments),
     /// Read and check a scene, and say what a run would do; solves nothing
     Check(check::CheckArguments),
 }
@@ -46,6 +49,7 @@ pub fn main() -> i32 {
     };
     let outcome: Result<()> = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
     };
     match outcome {

@@ -9,13 +9,14 @@ mod keys;
 mod overrides;
 mod read;
 mod resolved;
+pub mod sweep;
 
 use std::path::PathBuf;
 
 use serde::Serialize;
 
 pub use differences::differences;
-pub use overrides::set;
+pub use overrides::{get, set};
 pub use read::{from_table, parse, read};
 
 /// One scene: the layer, its material, the indenter, the contact, the loading history, and what to keep of it.

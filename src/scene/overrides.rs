@@ -30,6 +30,22 @@ pub fn set(table: &mut Table, path: &str, value: Value, file: &Path) -> Result<(
     put_in_table(table, &keys, 0, value).map_err(|(depth, reason)| Error::scene(file, keys[..depth].join("."), reason))
 }
 
+/// What stands at `path`, a path as [`set`] takes it; none where there is nothing.
+pub fn get<'a>(table: &'a Table, path: &str) -> Option<&'a Value> {
+    let keys = split_path(path);
+    let (first, rest) = keys.split_first()?;
+    let mut before = first;
+    rest.iter().try_fold(table.get(first)?, |value, key| {
+        let found = match value {
+            Value::Table(table) => table.get(key),
+            Value::Array(array) => element(array, before, key).ok().and_then(|index| array.get(index)),
+            _ => None,
+        };
+        before = key;
+        found
+    })
+}
+
 /// Adds to the error of a scene the last override at its key, of the table that the key is in, or of what the key
 /// holds: where the user is most likely to have written what is wrong.
 pub(super) fn blame(error: Error, overrides: &[String]) -> Error {
