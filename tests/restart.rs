@@ -101,11 +101,11 @@ fn nothing_is_lost_by_twenty_kills() {
         output_of(&mut run(&mut program(1), &scene, &whole));
         let mut rows_before = 0;
         for kill in 0..20_u64 {
-            let mut program = run(&mut program(1), &scene, &killed);
+            let mut command = run(&mut program(1), &scene, &killed);
             if checkpoint::read(&killed).unwrap().is_some() {
-                program.arg("--resume");
+                command.arg("--resume");
             }
-            let mut child = program.stdout(Stdio::null()).spawn().unwrap();
+            let mut child = command.stdout(Stdio::null()).spawn().unwrap();
             let random = kill.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407) >> 40;
             wait_for(&mut child, &killed, (random % 5) as usize);
             std::thread::sleep(Duration::from_micros(random % 20_011));
@@ -146,9 +146,9 @@ fn a_signal_to_one_rank_stops_all() {
         let (whole, stopped) = (directory.path().join("whole.h5"), directory.path().join("stopped.h5"));
         output_of(run(&mut program(1), &scene, &whole).args(["--set", "output.bulk_at=[]"]));
         for (signal, ranks) in [("TERM", 2), ("INT", 1)] {
-            let mut program = run(&mut program(2), &scene, &stopped);
-            program.args(["--set", "output.bulk_at=[]"]);
-            let mut child = program.stdout(Stdio::null()).spawn().unwrap();
+            let mut command = run(&mut program(2), &scene, &stopped);
+            command.args(["--set", "output.bulk_at=[]"]);
+            let mut child = command.stdout(Stdio::null()).spawn().unwrap();
             wait_for(&mut child, &stopped, 4);
             let rank = processes_of(&child).pop().unwrap();
             assert!(Command::new("kill").args([&format!("-{signal}"), &rank]).status().unwrap().success());
