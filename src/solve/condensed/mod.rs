@@ -23,6 +23,7 @@ use crate::error::Result;
 use crate::interface::{Interface, Residual};
 use crate::loading::Phase;
 use crate::petsc::{Gather, Matrix, Step, Vector, Verdict};
+use crate::snapshot::{NaturalOrder, Snapshot};
 
 pub use compliance::Compliance;
 pub use following::{Following, Relaxation};
@@ -47,6 +48,10 @@ pub trait Backing {
     fn takes_forces(&self) -> bool;
     /// Takes the memory to the end of an accepted step that ends at `u` under the contact forces -`residual`.
     fn commit(&mut self, step: Step, u: &Vector, residual: &Residual) -> Result<()>;
+    /// Adds the memory to a snapshot; `order` is that of the face.
+    fn save(&mut self, order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()>;
+    /// Takes the memory at the accepted state `u` from a snapshot that is whole on every rank.
+    fn restore(&mut self, order: &NaturalOrder, snapshot: &Snapshot, u: &Vector) -> Result<()>;
     /// The bulk fields at the accepted state `u`; `face` brings vectors of the face to all ranks.
     fn bulk_fields(&mut self, face: &mut ContactFace, u: &Vector) -> Result<BulkFields>;
 }
@@ -60,6 +65,8 @@ pub struct Condensed<B> {
     factor: Option<Factor>,
     /// The secant that the factor was made with.
     factored: f64,
+    /// The step that the factor was made for.
+    factored_for: Step,
     /// Solves since the last tangent.
     used: usize,
     /// Whether a factor may serve for later tangents.
@@ -83,6 +90,7 @@ impl<B: Backing> Condensed<B> {
             columns: SparseColumns::default(),
             factor: None,
             factored: f64::NAN,
+            factored_for: Step { t: 0.0, dt: 0.0 },
             used: 0,
             reuse: 2 * held.len() > LARGE_FACE,
         })
@@ -145,7 +153,7 @@ impl<B: Backing> TransientProblem for Condensed<B> {
         if !serves {
             // A singular system has no factor; the solve then says so by what it returns.
             self.factor = Factor::new(compliance, self.columns.clone(), secant).ok();
-            self.factored = secant;
+            (self.factored, self.factored_for) = (secant, step);
         }
         Ok(())
     }
@@ -193,6 +201,38 @@ impl<B: Backing> TransientProblem for Condensed<B> {
             self.refine_forces(step, u)?;
         }
         self.backing.commit(step, u, &self.face.residual)
+    }
+
+    fn save(&mut self, u: &Vector, snapshot: &mut Snapshot) -> Result<()> {
+        let mut order = NaturalOrder::on_first_rank(u)?;
+        order.save("u", u, snapshot)?;
+        self.backing.save(&mut order, snapshot)?;
+        self.face.save(snapshot);
+        let Step { t, dt } = self.factored_for;
+        snapshot.put("condensed", vec![self.factored, t, dt, self.used as f64]);
+        if let Some(factor) = self.factor.as_ref().filter(|_| self.reuse) {
+            factor.save(snapshot);
+        }
+        Ok(())
+    }
+
+    fn restore(&mut self, snapshot: &Snapshot, u: &mut Vector) -> Result<()> {
+        let order = NaturalOrder::on_first_rank(u)?;
+        order.restore("u", u, snapshot)?;
+        self.backing.restore(&order, snapshot, u)?;
+        self.face.restore(snapshot, u)?;
+        let [factored, t, dt, used] = snapshot.numbers("condensed")?;
+        (self.factored, self.factored_for, self.used) = (factored, Step { t, dt }, used as usize);
+        self.factor = None;
+        if !self.reuse || !snapshot.has("factor") {
+            return Ok(());
+        }
+        // Its compliance is that of the step that it was made for.
+        self.backing.prepare(self.factored_for)?;
+        if let Some(compliance) = self.backing.compliance() {
+            self.factor = Factor::restore(snapshot, compliance)?;
+        }
+        Ok(())
     }
 
     fn contact(&mut self) -> Result<Contact<'_>> {

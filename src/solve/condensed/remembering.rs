@@ -24,6 +24,7 @@ use crate::error::{Error, Result};
 use crate::interface::Residual;
 use crate::parallel::agree;
 use crate::petsc::{Cholesky, Matrix, Step, Vector};
+use crate::snapshot::{NaturalOrder, Snapshot};
 
 /// How many step lengths are kept factorised: that of the phase, and that of a step which was cut or split.
 const KEPT: usize = 2;
@@ -136,6 +137,17 @@ impl Backing for Remembering {
         agree(&self.comm, mine)
     }
 
+    fn save(&mut self, _order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()> {
+        let mine = self.interior.as_ref().map_or(Ok(()), |interior| interior.save(snapshot));
+        agree(&self.comm, mine)
+    }
+
+    fn restore(&mut self, _order: &NaturalOrder, snapshot: &Snapshot, _u: &Vector) -> Result<()> {
+        self.prepared = None;
+        let mine = self.interior.as_mut().map_or(Ok(()), |interior| interior.restore(snapshot));
+        agree(&self.comm, mine)
+    }
+
     fn bulk_fields(&mut self, _face: &mut ContactFace, _u: &Vector) -> Result<BulkFields> {
         let mine = self.interior.as_mut().map_or(Ok(BulkFields::default()), Interior::fields);
         agree(&self.comm, mine)
@@ -222,6 +234,18 @@ impl Interior {
         drop(load);
         self.solvers[0].factor.solve(&self.load, &mut self.u)?;
         self.bulk.commit(step, &self.u)
+    }
+
+    fn save(&self, snapshot: &mut Snapshot) -> Result<()> {
+        let mut order = self.body.natural_order(&self.u)?;
+        order.save("body", &self.u, snapshot)?;
+        self.bulk.save(&mut order, snapshot)
+    }
+
+    fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
+        let order = self.body.natural_order(&self.u)?;
+        order.restore("body", &mut self.u, snapshot)?;
+        self.bulk.restore(&order, snapshot, &self.u)
     }
 
     fn fields(&mut self) -> Result<BulkFields> {
