@@ -97,9 +97,11 @@ impl<B: Backing> TransientProblem for Condensed<B> {
         self.face.try_residual(step, u, rate)?;
         self.face.set_scale(self.backing.softness() * self.face.contact_norm());
         self.backing.free(step, u, rate, f)?;
+        // Asked for on all ranks, here and below, although rank 0 alone has entries.
+        let mut values = f.view_mut()?;
         if let Some(compliance) = self.backing.compliance() {
             let forces = self.face.residual.iter().enumerate().flat_map(|(i, r)| [(2 * i, r.x), (2 * i + 1, r.y)]);
-            compliance.add_displacements(forces, &mut f.view_mut()?);
+            compliance.add_displacements(forces, &mut values);
         }
         Ok(())
     }
@@ -125,19 +127,21 @@ impl<B: Backing> TransientProblem for Condensed<B> {
     fn multiply(&mut self, v: &Vector, product: &mut Vector) -> Result<()> {
         product.copy_from(v)?;
         product.scale(self.backing.secant())?;
+        let mut product = product.view_mut()?;
         let Some(compliance) = self.backing.compliance() else { return Ok(()) };
         let v = v.view()?;
-        compliance.add_displacements(self.columns.multiply(|place| v[place]), &mut product.view_mut()?);
+        compliance.add_displacements(self.columns.multiply(|place| v[place]), &mut product);
         Ok(())
     }
 
     fn solve(&mut self, b: &Vector, x: &mut Vector) -> Result<()> {
         self.used += 1;
+        let mut x = x.view_mut()?;
         let Some(compliance) = self.backing.compliance() else { return Ok(()) };
         match &self.factor {
-            Some(factor) => factor.solve(compliance, &b.view()?, &mut x.view_mut()?),
+            Some(factor) => factor.solve(compliance, &b.view()?, &mut x),
             None => {
-                x.view_mut()?.fill(f64::NAN);
+                x.fill(f64::NAN);
                 Ok(())
             }
         }
