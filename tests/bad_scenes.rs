@@ -1,7 +1,6 @@
 //! Every scene of `tests/scenes/bad/` is refused with exactly the message that it carries.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use mpjr::composition;

@@ -2,7 +2,6 @@
 //! all ranks; nothing written where nothing should be; no panic and no library's stack trace.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use std::path::Path;

@@ -2,7 +2,6 @@
 //! more than the last 2 s of them are lost (CONTRACT.md and issue 2, "Output").
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use std::process::Stdio;

@@ -12,7 +12,6 @@
 //! penalty takes 1e-7 of the approach.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use std::f64::consts::{PI, TAU};

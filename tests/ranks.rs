@@ -2,7 +2,6 @@
 //! bulk fields on 1, 2, 3 and 4 ranks agree to 1e-8 of the largest value of each field (issue 2).
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use common::program::{Outcome, Run};

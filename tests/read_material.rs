@@ -1,7 +1,6 @@
 //! Materials of scenes: from files, from the power law, at a temperature.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use std::path::{Path, PathBuf};

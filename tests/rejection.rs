@@ -4,7 +4,6 @@
 //! All times are sums of powers of two, so that the steps themselves are the same to the last bit.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use std::cell::Cell;

@@ -11,7 +11,6 @@
 //! Over a ramp d is linear only if the contact is rigid; then the exponential memory is exact.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use common::program::{Outcome, Run};

@@ -4,7 +4,6 @@
 //! Layer of 1 m by 1 m unless said otherwise, wavelength 1 m, g_0 = 5e-4 m, one arm (0.579, 0.817 s), approach 2 g_0.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use common::program::{Outcome, Run};
@@ -55,7 +54,7 @@ fn transient_table() {
     ] {
         let found = transient(CELLS, penalty, memory, refine);
         let apart = [0, 1, 2].map(|i| off(found[i], expected[i]));
-        println!("{penalty:e} {memory} x{refine}: {found:.6?} off by {apart:.1e?}");
+        println!("{penalty:e} {memory} x{refine}: {found:.6?} off by {apart:.6?}");
         assert!(apart.iter().all(|e| e.abs() < 1e-3), "{penalty:e} {memory} x{refine}: {found:?}");
     }
 }
@@ -68,7 +67,7 @@ fn transient_table_is_approached() {
     for (cells, largest) in [(32, 3e-3), (64, 1e-3), (128, 4e-4)] {
         let found = transient(cells, PENALTY, "exponential", 1);
         let apart = [0, 1, 2].map(|i| off(found[i], expected[i]));
-        println!("{cells} cells: {found:.6?} off by {apart:.1e?}");
+        println!("{cells} cells: {found:.6?} off by {apart:.6?}");
         assert!(apart.iter().all(|e| e.abs() < largest), "{cells} cells: {apart:?}");
     }
 }
@@ -109,8 +108,9 @@ fn mean_of_last(outcome: &Outcome, rows: usize) -> [f64; 2] {
         .map(|column| outcome.history(column).iter().rev().take(rows).sum::<f64>() / rows as f64)
 }
 
-/// VERIFY.md, "Fully slipping steady state": N_z and the hysteretic coefficient within 0.5 % of the table (rigid limit)
-/// and of the oracle at this penalty.
+/// VERIFY.md, "Fully slipping steady state", at 128 x 128 cells: N_z and the hysteretic coefficient within 0.5 % of the
+/// table, which holds for a rigid contact (measured with 1e6 Pa/m: -0.13 %, -0.41 %), and much closer to the oracle at
+/// this penalty (measured: N_z within 5e-6, the coefficient within 2.4e-4).
 #[test]
 fn steady_sliding_table() {
     for (velocity, normal, ratio, seconds) in [(2.154e-2, 0.49754, 2.195e-4, 30.0), (0.1, 0.53513, 6.839e-4, 20.0)] {
@@ -118,35 +118,65 @@ fn steady_sliding_table() {
         let exact = steady(velocity, PoissonRule::ConstantRatio);
         let apart =
             [off(n, normal), off(p / n, ratio), off(n, exact.normal), off(p / n, exact.hysteretic / exact.normal)];
-        println!("v = {velocity}: N {n:.6}, ratio {:.4e}, off by {apart:.1e?}", p / n);
+        println!("v = {velocity}: N {n:.6}, ratio {:.4e}, off by {apart:.6?}", p / n);
         assert!(apart.iter().all(|e| e.abs() < 5e-3), "v = {velocity}: {apart:?}");
+        assert!(apart[2].abs() < 5e-5 && apart[3].abs() < 1e-3, "v = {velocity}: {apart:?}");
     }
 }
 
-/// The same at a constant bulk modulus.
+/// 1 m/s and the limit of slow sliding, an elastic layer of the relaxed modulus. At 1 m/s the coefficient is the small
+/// remainder of two large ones (0.583e-4 against 6.8e-4 at 0.1 m/s): 0.6 % of it is left at 128 cells, 2 % at 64, with
+/// a penalty of 1e8 Pa/m; 0.5 % is met for N_z.
+#[test]
+fn fast_and_slow_sliding() {
+    let slow = square(SLIDING, 64)
+        .set("material.poisson_ratio=0.3")
+        .set("material.arms=[]")
+        .set(format!("material.shear_modulus={}", 568.498 * (1.0 - 0.579)))
+        .set("contact.penalty=1e8")
+        .set("phase.indent.steps=5")
+        .set("phase.slide.distance=0.25")
+        .set("phase.slide.steps=32")
+        .done();
+    let [n, p] = mean_of_last(&slow, 2);
+    println!("v -> 0: N {n:.6}, ratio {:.4e}", p / n);
+    assert!(off(n, 0.49498).abs() < 5e-3 && off(p / n, -1.138e-4).abs() < 5e-3, "{n} {}", p / n);
+
+    let [n, p] = slid(64, 1.0, "constant_ratio", 12.0);
+    println!("v = 1 m/s: N {n:.6}, ratio {:.4e}", p / n);
+    assert!(off(n, 0.59554).abs() < 5e-3 && off(p / n, 0.583e-4).abs() < 3e-2, "{n} {}", p / n);
+}
+
+/// The same at a constant bulk modulus, at 64 x 64 cells: 0.884 N/m in the table.
 #[test]
 fn steady_sliding_at_constant_bulk_modulus() {
     let [n, p] = slid(64, 0.1, "constant_bulk_modulus", 20.0);
     let exact = steady(0.1, PoissonRule::ConstantBulkModulus);
     let apart = [off(n, 0.884), off(n, exact.normal), off(p / n, exact.hysteretic / exact.normal)];
-    println!("N {n:.6}, ratio {:.4e}, off by {apart:.1e?}", p / n);
+    println!("N {n:.6}, ratio {:.4e}, off by {apart:.6?}", p / n);
     assert!(apart.iter().all(|e| e.abs() < 5e-3), "{apart:?}");
 }
 
-/// The rate in h of N_z in steady sliding at 0.1 m/s.
+/// Steady sliding at 0.1 m/s as the cells shrink with the steps. Measured against the oracle at 16, 32, 64, 128 cells:
+/// N_z 2.7e-4, 6.0e-5, 6e-6, -5e-6 (second order, until the steps of half a cell show); hysteretic force 1.4e-3, 1.3e-3,
+/// 5.6e-4, 2.2e-4 (uneven, as it hangs on where the edges of the contact lie between nodes).
 #[test]
 fn steady_sliding_converges() {
     let exact = steady(0.1, PoissonRule::ConstantRatio);
-    let errors = [16, 32, 64].map(|cells| {
+    let errors = [16, 32, 64, 128].map(|cells| {
         let [n, p] = slid(cells, 0.1, "constant_ratio", 20.0);
-        [off(n, exact.normal), off(p, exact.hysteretic)]
+        [off(n, exact.normal), off(p, exact.hysteretic)].map(f64::abs)
     });
-    println!("{errors:.2e?}");
-    assert!(errors[2][0].abs() < 0.5 * errors[0][0].abs());
+    println!("{errors:.6?}");
+    let rate = |i: usize, fine: usize| (errors[0][i] / errors[fine][i]).log2() / fine as f64;
+    assert!(rate(0, 1) > 1.7, "N_z from 16 to 32 cells: {errors:?}");
+    assert!(errors[2][0] < 3e-5 && errors[3][0] < 3e-5, "N_z: {errors:?}");
+    assert!(rate(1, 3) > 0.7 && errors[3][1] < 5e-4, "hysteretic force: {errors:?}");
 }
 
 /// Westergaard: no friction, elastic, three wavelengths deep. N_z for the approach from the oracle; contact width and
-/// pressure for N_z from the closed form.
+/// pressure for N_z from the closed form: the width to two cells, which are counted by nodes, the pressure in the mean
+/// square, to first order in h because of the vertical slope at the edges.
 #[test]
 fn westergaard() {
     let young = 2.0 * 568.498 * 1.3;
@@ -156,17 +186,19 @@ fn westergaard() {
         layer: Layer { depth: 3.0 },
         solid: elastic,
         friction: 0.0,
+        softness: 1e-8,
         ..sliding(0.0, PoissonRule::ConstantRatio)
     };
-    for cells in [32, 64, 128] {
+    let exact = deep.solve(512, |x| SURFACE.at(x), Load::Approach(1.5e-3)).unwrap();
+    for (cells, largest) in [(32, 6e-2), (64, 3e-2), (128, 1.5e-2)] {
         let outcome = Run::new(PRESSING)
             .set("layer.depth=3.0")
             .set(format!("layer.cells=[{cells},{cells}]"))
             .set("layer.grading=8.0")
             .set("phase.indent.approach=1.5e-3")
+            .set("contact.penalty=1e8")
             .done();
         let n = outcome.last("normal_force");
-        let exact = deep.solve(512, |x| SURFACE.at(x), Load::Approach(1.5e-3)).unwrap();
         let a = wavy.half_width(n);
         let width = outcome.last("contact_fraction");
         let field = outcome.results().interface("pressure").unwrap();
@@ -178,13 +210,15 @@ fn westergaard() {
             square += (p - exact).powi(2);
             norm += exact * exact;
         }
+        let (apart, peak) = ((square / norm).sqrt(), off(pressure[0], wavy.pressure(n, 0.0)));
         println!(
-            "{cells}: N {n:.6} off {:.1e}; width {width} of {:.5}; pressure off {:.2e}; peak off {:.2e}",
+            "{cells}: N off by {:.1e}; width {width} of {:.5}; pressure {apart:.2e}; peak {peak:.2e}",
             off(n, exact.normal),
-            2.0 * a,
-            (square / norm).sqrt(),
-            off(pressure[0], wavy.pressure(n, 0.0))
+            2.0 * a
         );
+        assert!(off(n, exact.normal).abs() < 1e-4, "{cells}: N {n} instead of {}", exact.normal);
+        assert!((width - 2.0 * a).abs() < 2.0 / cells as f64, "{cells}: {width} instead of {}", 2.0 * a);
+        assert!(apart < largest && peak.abs() < 3e-3, "{cells}: pressure off by {apart:e}, peak by {peak:e}");
     }
 }
 
@@ -199,11 +233,9 @@ fn symmetric_scenes() {
         )
         .replace("sides = \"periodic\"", "sides = \"free\"");
     for (scene, rule) in [(SLIDING, "constant_ratio"), (&centred, "constant_bulk_modulus")] {
-        let outcome = square(scene, 24)
+        let outcome = square(&scene.replace("velocity = 0.1\ndistance = 1.0", "duration = 1.0"), 24)
             .set("material.poisson_ratio=0.3")
             .set(format!("material.poisson_rule=\"{rule}\""))
-            .set("phase.slide.velocity=0.0")
-            .set("phase.slide.duration=1.0")
             .set("phase.slide.steps=4")
             .done();
         let largest = outcome.history("normal_force").into_iter().fold(0.0, f64::max);
@@ -242,7 +274,11 @@ fn full_contact() {
         let exact = sliding(0.1, PoissonRule::ConstantRatio).full_contact(SURFACE, Load::Approach(deep)).unwrap();
         assert_eq!(outcome.last("contact_fraction"), 1.0);
         let [n, p] = mean_of_last(&outcome, 2);
-        [off(n, exact.normal), off(p, exact.hysteretic)]
+        [off(n, exact.normal), off(p, exact.hysteretic)].map(f64::abs)
     });
-    println!("{errors:.2e?}");
+    // The mean load is exact but for the solver's tolerance and what has not relaxed yet; measured 1e-7, and for the
+    // hysteretic force 2.1e-3, 1.4e-4, 4e-5.
+    println!("{errors:.7?}");
+    assert!(errors.iter().all(|error| error[0] < 1e-5), "{errors:?}");
+    assert!(errors[0][1] < 5e-3 && errors[1][1] < 5e-4 && errors[2][1] < 1e-4, "{errors:?}");
 }

@@ -1,7 +1,6 @@
 //! `mpjr verify --quick` agrees with the oracle, on one rank and on two, and prints its table once.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 fn table(ranks: usize) -> String {

@@ -3,6 +3,7 @@
 mod check;
 mod fit;
 mod material;
+mod plot;
 mod profile;
 mod progress;
 mod record;
@@ -36,6 +37,8 @@ enum Command {
     Fit(fit::FitArgs),
     /// Solve scenes with a known answer and compare; the exit code is 1 if any differs by more than its tolerance
     Verify(verify::VerifyArguments),
+    /// Draw figures from results
+    Plot(plot::PlotArguments),
 }
 
 /// Reads the command line, does what it says, and returns the exit code: 0 done, 2 scene or command line wrong,
@@ -54,7 +57,14 @@ pub fn main() -> i32 {
     let outcome: Result<()> = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
-        // It needs no solver, so that one process does it for all.
+        // These need no solver, so that one process does it for all.
+        Command::Plot(arguments) => {
+            if is_first_process() {
+                plot::run(&arguments)
+            } else {
+                Ok(())
+            }
+        }
         Command::Fit(arguments) => {
             if is_first_process() {
                 fit::run(&arguments)

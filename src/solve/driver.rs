@@ -20,7 +20,8 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { max_newton: 30, max_cuts: 8 }
+        // From stick to slip under a sharp regularisation a step takes up to a hundred.
+        Self { max_newton: 200, max_cuts: 8 }
     }
 }
 
