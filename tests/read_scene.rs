@@ -86,7 +86,7 @@ fn the_paper_s_scene_is_read_as_written() {
 /// pressure where it hardly changes its volume; both by hand.
 #[test]
 fn a_tolerance_is_a_penalty() {
-    let penalty = |overrides: &[&str]| read_with(SMALLEST, overrides).unwrap().contact.penalty;
+    let penalty = |overrides: &[&str]| read_set(SMALLEST, overrides).unwrap().contact.penalty;
     let tolerance = "contact={ tolerance = 1e-2 }";
     // G = 1 Pa, dx = 0.5 m: C = 0.7 * 0.5 / pi m/Pa.
     let wave = std::f64::consts::PI / (0.7 * 0.5) / 1e-2;
@@ -95,7 +95,7 @@ fn a_tolerance_is_a_penalty() {
     // nu = 0.49, depth 1 m: C = 0.02 / (2 * 0.51) m/Pa.
     let set = [tolerance, "material={ shear_modulus = 1, poisson_ratio = 0.49 }"];
     assert!((penalty(&set) * 1e-2 * 0.02 / 1.02 - 1.0).abs() < 1e-12);
-    let scene = read_with(SMALLEST, &set).unwrap();
+    let scene = read_set(SMALLEST, &set).unwrap();
     assert!((added_compliance(scene.contact.penalty, &scene.layer, &scene.material) - 1e-2).abs() < 1e-15);
 }
 
