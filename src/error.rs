@@ -37,6 +37,8 @@ pub enum Error {
     Mismatch(String),
     /// A library refused a call it should have taken: a defect of this program or of its installation. Exit code 1.
     Internal(String),
+    /// A signal stopped the run, and a checkpoint was written. Exit code 5.
+    Stopped(String),
 }
 
 impl Error {
@@ -50,12 +52,14 @@ impl Error {
         Self::File { file: file.to_owned(), reason: reason.to_string() }
     }
 
-    /// The exit code of the process: 2 scene or command line, 3 no convergence, 4 files, 1 anything else.
+    /// The exit code of the process: 2 scene or command line, 3 no convergence, 4 files, 5 stopped by a signal,
+    /// 1 anything else.
     pub fn exit_code(&self) -> i32 {
         match self {
             Self::Scene { .. } | Self::Usage(_) => 2,
             Self::Solver(_) | Self::Domain(_) => 3,
             Self::File { .. } => 4,
+            Self::Stopped(_) => 5,
             Self::Mismatch(_) | Self::Internal(_) => 1,
         }
     }
@@ -73,7 +77,8 @@ impl fmt::Display for Error {
             | Self::Solver(text)
             | Self::Domain(text)
             | Self::Mismatch(text)
-            | Self::Internal(text) => f.write_str(text),
+            | Self::Internal(text)
+            | Self::Stopped(text) => f.write_str(text),
         }
     }
 }

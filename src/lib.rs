@@ -18,6 +18,7 @@ pub mod plot;
 pub mod profile;
 pub mod rheology;
 pub mod scene;
+pub mod snapshot;
 pub mod solution;
 pub mod solve;
 pub mod verify;

@@ -45,12 +45,22 @@ where
     Ok(numbers)
 }
 
+/// Whether any rank says yes. Collective.
+pub fn any<C: Communicator + CommunicatorCollectives>(comm: &C, mine: bool) -> bool {
+    let mut somewhere = false;
+    comm.all_reduce_into(&mine, &mut somewhere, SystemOperation::logical_or());
+    somewhere
+}
+
 /// Gives every rank the bytes of rank `root`. Collective.
 pub fn broadcast<C: Communicator + CommunicatorCollectives>(comm: &C, root: i32, bytes: &mut Vec<u8>) {
     let mut length = bytes.len();
     comm.process_at_rank(root).broadcast_into(&mut length);
     bytes.resize(length, 0);
-    comm.process_at_rank(root).broadcast_into(&mut bytes[..]);
+    // MPI counts with 32 bits.
+    for piece in bytes.chunks_mut(1 << 30) {
+        comm.process_at_rank(root).broadcast_into(piece);
+    }
 }
 
 /// The kind of an error and its texts, separated by zeros.
@@ -65,6 +75,7 @@ fn encode(error: &Error) -> Vec<u8> {
         Error::Domain(text) => ("domain", vec![text.clone()]),
         Error::Mismatch(text) => ("mismatch", vec![text.clone()]),
         Error::Internal(text) => ("internal", vec![text.clone()]),
+        Error::Stopped(text) => ("stopped", vec![text.clone()]),
     };
     std::iter::once(kind.to_owned()).chain(texts).collect::<Vec<_>>().join("\0").into_bytes()
 }
@@ -81,6 +92,7 @@ fn decode(bytes: &[u8]) -> Error {
         "solver" => Error::Solver(next()),
         "domain" => Error::Domain(next()),
         "mismatch" => Error::Mismatch(next()),
+        "stopped" => Error::Stopped(next()),
         _ => Error::Internal(next()),
     }
 }
@@ -99,6 +111,7 @@ mod tests {
             Error::Domain("d".into()),
             Error::Mismatch("m".into()),
             Error::Internal("i".into()),
+            Error::Stopped("t".into()),
         ] {
             assert_eq!(decode(&encode(&error)), error);
         }

@@ -1,14 +1,18 @@
 //! The commands of `mpjr`, one module each.
 
+mod case;
 mod check;
 mod fit;
+mod interrupt;
 mod material;
+mod origin;
 mod plot;
 mod profile;
 mod progress;
 mod record;
 mod run;
 mod summary;
+mod sweep;
 mod verify;
 
 use clap::{Parser, Subcommand};
@@ -31,6 +35,8 @@ struct Arguments {
 enum Command {
     /// Solve one scene and write its HDF5 file
     Run(run::RunArguments),
+    /// Run every case of a sweep; cases that are complete are not run again
+    Sweep(sweep::SweepArguments),
     /// Read and check a scene, and say what a run would do; solves nothing
     Check(check::CheckArguments),
     /// Identify a Prony series from measured data or from the fractional power law
@@ -42,7 +48,8 @@ enum Command {
 }
 
 /// Reads the command line, does what it says, and returns the exit code: 0 done, 2 scene or command line wrong,
-/// 3 no convergence, 4 a file could not be read or written, 1 anything else, such as a failed `verify`.
+/// 3 no convergence, 4 a file could not be read or written, 5 stopped by a signal, 1 anything else, such as a failed
+/// `verify`.
 pub fn main() -> i32 {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -56,6 +63,7 @@ pub fn main() -> i32 {
     };
     let outcome: Result<()> = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         // These need no solver, so that one process does it for all.
         Command::Plot(arguments) => {

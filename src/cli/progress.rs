@@ -1,9 +1,13 @@
 //! The progress of a run: a bar on a terminal, plain lines otherwise.
 
+use std::cell::RefCell;
 use std::io::IsTerminal;
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::sweep::claim::Claim;
 
 /// Plain lines come no closer than this, but for the ends of phases.
 const LINE_EVERY: Duration = Duration::from_secs(5);
@@ -12,6 +16,13 @@ const LINE_EVERY: Duration = Duration::from_secs(5);
 pub enum Progress {
     /// On ranks that show nothing.
     Silent,
+    /// In the claim file of a case of a sweep, for the board to show.
+    Claim {
+        /// What is being done.
+        claim: Rc<RefCell<Claim>>,
+        /// Planned steps in all.
+        total: usize,
+    },
     /// A bar that is redrawn.
     Bar(ProgressBar),
     /// A line now and then.
@@ -60,11 +71,17 @@ impl Progress {
         Self::Bar(bar)
     }
 
+    /// For a case of a sweep; silent on the ranks that have no claim.
+    pub fn claim(claim: Option<Rc<RefCell<Claim>>>, total: usize) -> Self {
+        claim.map_or(Self::Silent, |claim| Self::Claim { claim, total })
+    }
+
     /// Shows a step.
     pub fn show(&mut self, stage: &Stage<'_>) {
         let Stage { done, phase, time, normal_force, tangential_force, newton, phase_end } = *stage;
         match self {
             Self::Silent => {}
+            Self::Claim { claim, total } => claim.borrow_mut().tell(stage.done, *total),
             Self::Bar(bar) => {
                 bar.set_position(done as u64);
                 bar.set_message(format!("{phase:.10}  N = {normal_force:.3e}  Q = {tangential_force:.3e} N/m"));
@@ -91,7 +108,7 @@ impl Progress {
 
 /// Where a bar can be drawn: standard error when it is a terminal; under Open MPI's mpirun, which gives its children a
 /// pseudo-terminal as standard output in any case, that output when mpirun's own is a terminal.
-fn terminal() -> Option<ProgressDrawTarget> {
+pub fn terminal() -> Option<ProgressDrawTarget> {
     if std::io::stderr().is_terminal() {
         return Some(ProgressDrawTarget::stderr());
     }

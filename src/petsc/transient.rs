@@ -178,8 +178,8 @@ impl Integrator {
         }
     }
 
-    /// Steps `problem` from `u` at `start` (its first step) until it says stop. `jacobian` is the matrix its tangent
-    /// is written to, `u` holds the last accepted state afterwards.
+    /// Steps `problem` from `u` at the time `now`, first by `dt` (s), until it says stop. `jacobian` is the matrix its
+    /// tangent is written to, `u` holds the last accepted state afterwards.
     ///
     /// # Errors
     /// What the problem returned, or [`Error::Solver`] when a step failed after the allowed cuts.
@@ -188,9 +188,10 @@ impl Integrator {
         problem: &mut P,
         jacobian: &mut Matrix,
         u: &mut Vector,
-        start: Step,
+        (now, dt): (f64, f64),
     ) -> Result<()> {
-        let mut context = Context { problem, ts: self.ts, step: start, newton: 0, cuts: 0, error: None };
+        let mut context =
+            Context { problem, ts: self.ts, step: Step { t: now + dt, dt }, newton: 0, cuts: 0, error: None };
         let pointer = (&raw mut context).cast::<c_void>();
         let (ts, mut snes, mut reason) = (self.ts, null_mut(), 0);
         // SAFETY: `context` outlives TSSolve, the only call that runs the callbacks; PETSc gives each callback the
@@ -217,8 +218,8 @@ impl Integrator {
                 check(ffi::PCShellSetContext(pc, pointer))?;
                 check(ffi::PCShellSetApply(pc, Some(solve::<P>)))?;
             }
-            check(ffi::TSSetTime(ts, start.t - start.dt))?;
-            check(ffi::TSSetTimeStep(ts, start.dt))?;
+            check(ffi::TSSetTime(ts, now))?;
+            check(ffi::TSSetTimeStep(ts, dt))?;
             let code = ffi::TSSolve(ts, u.raw());
             ffi::TSGetConvergedReason(ts, &mut reason);
             code

@@ -4,6 +4,7 @@
 //! its field states, because [`read`] refuses a file that says otherwise.
 
 mod checks;
+mod differences;
 mod include;
 mod indenter;
 mod keys;
@@ -12,15 +13,17 @@ mod overrides;
 mod penalty;
 mod read;
 mod resolved;
+pub mod sweep;
 
 use std::path::PathBuf;
 
 use serde::Serialize;
 
 pub use checks::whole_periods;
+pub use differences::differences;
 pub use include::{Load, include, open};
 pub use indenter::{Extend, Indenter, Rms};
-pub use overrides::set;
+pub use overrides::{get, set};
 pub use penalty::{added_compliance, penalty_for};
 pub use read::{from_table, parse, read, read_with};
 
@@ -223,6 +226,8 @@ pub struct Output {
     pub interface_every: usize,
     /// When bulk fields are written; empty = never.
     pub bulk_at: Vec<When>,
+    /// Steps between checkpoints; 0 = only on a signal.
+    pub checkpoint_every: usize,
 }
 
 /// A moment of the loading history.

@@ -19,7 +19,12 @@ pub(super) fn apply(table: &mut Table, overrides: &[String], file: &Path) -> Res
 
 /// Whether an override is of a material as a whole or of its file, and so decides what other keys there are.
 pub(super) fn names_material(typed: &str) -> bool {
-    let keys = split(typed).map_or_else(|_| Vec::new(), |(path, _)| split_path(path));
+    split(typed).is_ok_and(|(path, _)| is_of_material(path))
+}
+
+/// Whether the path is that of a material as a whole or of its file.
+pub(super) fn is_of_material(path: &str) -> bool {
+    let keys = split_path(path);
     match keys.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
         ["material"] | ["material", "file"] | ["material", _, "file"] => true,
         ["material", index] => index.parse::<usize>().is_ok(),
@@ -38,6 +43,22 @@ pub fn set(table: &mut Table, path: &str, value: Value, file: &Path) -> Result<(
         return Err(Error::scene(file, path, "must be keys joined by dots, such as layer.width"));
     }
     put_in_table(table, &keys, 0, value).map_err(|(depth, reason)| Error::scene(file, keys[..depth].join("."), reason))
+}
+
+/// What stands at `path`, a path as [`set`] takes it; none where there is nothing.
+pub fn get<'a>(table: &'a Table, path: &str) -> Option<&'a Value> {
+    let keys = split_path(path);
+    let (first, rest) = keys.split_first()?;
+    let mut before = first;
+    rest.iter().try_fold(table.get(first)?, |value, key| {
+        let found = match value {
+            Value::Table(table) => table.get(key),
+            Value::Array(array) => element(array, before, key).ok().and_then(|index| array.get(index)),
+            _ => None,
+        };
+        before = key;
+        found
+    })
 }
 
 /// Adds to the error of a scene the last override at its key, of the table that the key is in, or of what the key

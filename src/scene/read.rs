@@ -191,14 +191,15 @@ fn solver(section: Option<&Section>) -> Result<Solver> {
 fn output(section: Option<&Section>) -> Result<Output> {
     const STEPS: &str = "a whole number of steps, at least 0";
 
-    let default = Output { interface_every: 1, bulk_at: Vec::new() };
+    let default = Output { interface_every: 1, bulk_at: Vec::new(), checkpoint_every: 0 };
     let Some(section) = section else { return Ok(default) };
     section.only(&["interface_every", "bulk_at", "checkpoint_every"])?;
-    if section.optional_count("checkpoint_every", STEPS, 0..=usize::MAX)?.is_some_and(|steps| steps > 0) {
-        return Err(section.error("checkpoint_every", "checkpoints are not supported by this version; give 0"));
-    }
-    let interface_every = section.optional_count("interface_every", STEPS, 0..=usize::MAX)?;
-    Ok(Output { interface_every: interface_every.unwrap_or(default.interface_every), bulk_at: bulk_at(section)? })
+    let count = |key: &str| section.optional_count(key, STEPS, 0..=usize::MAX);
+    Ok(Output {
+        interface_every: count("interface_every")?.unwrap_or(default.interface_every),
+        bulk_at: bulk_at(section)?,
+        checkpoint_every: count("checkpoint_every")?.unwrap_or(default.checkpoint_every),
+    })
 }
 
 fn bulk_at(section: &Section) -> Result<Vec<When>> {

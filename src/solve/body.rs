@@ -8,6 +8,7 @@ use crate::element::quad4::{self, Answer};
 use crate::error::Result;
 use crate::mesh::{Mesh, Numbering};
 use crate::petsc::{Gather, Matrix, Pattern, Vector};
+use crate::snapshot::NaturalOrder;
 
 /// Shear and bulk modulus, Pa.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,6 +68,12 @@ impl Body {
     /// A zero vector of the unknowns.
     pub fn vector(&self) -> Result<Vector> {
         Vector::new(&self.comm, 2 * self.numbering.owned.len())
+    }
+
+    /// The order of the mesh, for vectors of the unknowns.
+    pub fn natural_order(&self, layout: &Vector) -> Result<NaturalOrder> {
+        let global: Vec<i32> = self.numbering.global.iter().flat_map(|&node| [2 * node, 2 * node + 1]).collect();
+        NaturalOrder::new(&self.comm, layout, &global, 2 * self.numbering.owned.start)
     }
 
     /// G K_dev + K K_vol, with `diagonal` for the held unknowns.

@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::interface::{Interface, Residual, Surface, Tangent};
 use crate::loading::{Phase, Placement};
 use crate::petsc::{Gather, Step, Vector, Verdict};
+use crate::snapshot::Snapshot;
 
 /// The contact face, known whole on every rank.
 pub struct ContactFace {
@@ -174,6 +175,22 @@ impl ContactFace {
         self.interface.residual(*placement, surface, &mut self.residual)?;
         self.mask_residual();
         Ok(())
+    }
+
+    /// Adds the accepted state to a snapshot; the displacements are part of the solution.
+    pub fn save(&self, snapshot: &mut Snapshot) {
+        let State { surface, placement: Placement { approach, sliding, sliding_rate }, scale } = &self.accepted;
+        snapshot.put("face", vec![*approach, *sliding, *sliding_rate, *scale]);
+        snapshot.put("face-rate", surface.rate.clone());
+    }
+
+    /// Takes the accepted state, whose solution is `u`, from a snapshot.
+    pub fn restore(&mut self, snapshot: &Snapshot, u: &Vector) -> Result<()> {
+        let [approach, sliding, sliding_rate, scale] = snapshot.numbers("face")?;
+        self.accepted.placement = Placement { approach, sliding, sliding_rate };
+        self.accepted.scale = scale;
+        snapshot.fill("face-rate", &mut self.accepted.surface.rate)?;
+        self.gather.gather(u, &mut self.accepted.surface.displacement)
     }
 
     /// The contact at the accepted state.

@@ -10,10 +10,11 @@ use crate::error::{Error, Result};
 use crate::interface::{Fields, Interface, Surface, Totals};
 use crate::loading::{Phase, Placement};
 use crate::petsc::{Matrix, Step, Vector, Verdict};
+use crate::snapshot::Snapshot;
 
 pub use body::{Body, Moduli};
 pub use condensed::{Backing, Compliance, Condensed, Following, Interior, LARGE_FACE, Relaxation, Remembering, Source};
-pub use driver::{Counts, Driver, Limits};
+pub use driver::{Counts, Driver, Limits, Position};
 pub use monolithic::Monolithic;
 
 /// A discretised contact problem in a form that TS and SNES can step.
@@ -41,6 +42,11 @@ pub trait TransientProblem {
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
     /// Takes the accepted state to the end of an accepted step.
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()>;
+    /// Adds the accepted state, with the solution `u`, to a snapshot: all that later steps depend on, down to the last
+    /// bit.
+    fn save(&mut self, u: &Vector, snapshot: &mut Snapshot) -> Result<()>;
+    /// Takes the accepted state and `u` from a snapshot that is whole on every rank.
+    fn restore(&mut self, snapshot: &Snapshot, u: &mut Vector) -> Result<()>;
     /// The contact at the accepted state.
     fn contact(&mut self) -> Result<Contact<'_>>;
     /// The bulk fields at the accepted state `u`.
@@ -100,6 +106,10 @@ pub struct Report<'a> {
     pub bulk_output: bool,
     /// Newton iterations of the step.
     pub newton: usize,
+    /// What the run took up to here.
+    pub counts: Counts,
+    /// Where the run goes on; none at the end.
+    pub next: Option<Position>,
     /// The problem, to be asked for fields.
     pub problem: &'a mut dyn TransientProblem,
     /// The solution.

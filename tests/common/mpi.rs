@@ -80,7 +80,7 @@ fn launch(case: &Case, ranks: usize) -> Result<(), Failed> {
 }
 
 /// What a command that mounts a disk of its own is to be started by, if that is possible here.
-fn mounting() -> Option<Command> {
+pub fn mounting() -> Option<Command> {
     [&["--user", "--map-root-user", "--mount"][..], &["--mount"]].into_iter().find_map(|how| {
         let mut command = Command::new("unshare");
         let works = command.args(how).args(["sh", "-c", "mount -t tmpfs tmpfs /mnt"]).output();
