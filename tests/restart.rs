@@ -2,7 +2,6 @@
 //! run that nothing befell.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use std::path::{Path, PathBuf};
