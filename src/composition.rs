@@ -1,23 +1,32 @@
 //! The composition root: the one place that matches on what a scene asks for and builds the parts for it.
 
+mod profile;
+
+use std::path::Path;
+
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
 
 use crate::bulk::{Arms, Bulk, Part, Series};
 use crate::element::mpjr::Quadrature;
+use crate::element::quad4;
 use crate::error::Result;
 use crate::friction::Friction;
 use crate::interface::{Interface, Laws};
 use crate::loading::{self, Motion, Phase};
 use crate::mesh::{Layer, Mesh, Sides};
-use crate::parallel::agree;
+use crate::parallel::{agree, share_numbers};
 use crate::petsc::{Linear, Matrix, Settings, Vector};
-use crate::profile::{Circle, Harmonic, Parabola, Profile, Repeated, Wedge};
-use crate::rheology::{Arm, Memory, Prony};
+use crate::profile::Profile;
+use crate::rheology::Memory;
+use crate::rheology::prony::{Prony, common_times};
 use crate::scene::{self, PoissonRule, Scene, When};
 use crate::solve::{
-    Body, Compliance, Condensed, Interior, LARGE_FACE, Limits, Moduli, Monolithic, Parts, Relaxation, TransientProblem,
+    Backing, Body, Compliance, Condensed, Following, Interior, LARGE_FACE, Limits, Moduli, Monolithic, Relaxation,
+    Remembering, Source, TransientProblem,
 };
+
+pub use profile::{Finest, Shape, elevations, shape};
 
 /// A scene made ready to run.
 pub struct Problem {
@@ -35,22 +44,45 @@ pub struct Problem {
     pub mesh: Mesh,
 }
 
-/// Builds what `scene` asks for, distributed over `comm`.
-pub fn build(comm: &SimpleCommunicator, scene: &Scene) -> Result<Problem> {
-    let mesh = layer(&scene.layer).mesh();
-    let laws = Laws {
-        profile: profile(scene),
-        penalty: scene.contact.penalty,
-        friction: scene.friction.as_ref().map(friction),
-    };
-    let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
-    if is_condensed(scene) { condensed(comm, scene, mesh, interface) } else { monolithic(comm, scene, mesh, interface) }
+/// Builds what `scene`, which was read from `file`, asks for, distributed over `comm`. What it needs of other files is
+/// read by one rank.
+pub fn build(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Problem> {
+    // First what the scene may be refused for.
+    let elevations = share_numbers(comm, || elevations(scene, file))?;
+    build_with_profile(comm, scene, shape(scene, file, &elevations)?.profile)
 }
 
-/// Whether the scene is solved on its contact face alone: where the interior follows the face for all time.
-pub fn is_condensed(scene: &Scene) -> bool {
-    let follows = scene.material.arms.is_empty() || scene.material.poisson_rule == Some(PoissonRule::ConstantRatio);
-    follows && scene.solver.strategy != scene::Strategy::Monolithic
+/// As [`build`], with another profile than the scene's.
+pub fn build_with_profile(comm: &SimpleCommunicator, scene: &Scene, profile: Box<dyn Profile>) -> Result<Problem> {
+    let mesh = layer(&scene.layer).mesh();
+    let laws = Laws { profile, penalty: scene.contact.penalty, friction: scene.friction.as_ref().map(friction) };
+    let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
+    match form(scene) {
+        Form::Monolithic => monolithic(comm, scene, mesh, interface),
+        Form::Following => following(comm, scene, mesh, interface),
+        Form::Remembering => remembering(comm, scene, mesh, interface),
+    }
+}
+
+/// How a scene is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// All unknowns.
+    Monolithic,
+    /// On the face; the interior follows it for all time.
+    Following,
+    /// On the face; the interior has a memory of its own.
+    Remembering,
+}
+
+/// How `scene` is solved: on its contact face unless it says otherwise.
+pub fn form(scene: &Scene) -> Form {
+    let follows = scene.material.is_elastic() || scene.material.poisson_rule == Some(PoissonRule::ConstantRatio);
+    match scene.solver.strategy {
+        scene::Strategy::Monolithic => Form::Monolithic,
+        scene::Strategy::Auto | scene::Strategy::Condensed if follows => Form::Following,
+        scene::Strategy::Auto | scene::Strategy::Condensed => Form::Remembering,
+    }
 }
 
 fn monolithic(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
@@ -68,11 +100,9 @@ fn monolithic(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: I
     Ok(Problem { strategy, tangent, u, phases: phases(scene), settings: settings(linear), mesh })
 }
 
-fn condensed(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
+fn following(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
     let moduli = moduli(&scene.material);
-    let held: Vec<[bool; 2]> = mesh.face.unknown.iter().map(|&unknown| mesh.held[unknown as usize]).collect();
-    let here = if comm.rank() == 0 { 2 * held.len() } else { 0 };
-    let u = Vector::new(comm, here)?;
+    let u = face_vector(comm, &mesh)?;
     let mine = if comm.rank() == 0 { compliance(scene, &mesh, moduli).map(Some) } else { Ok(None) };
     let compliance = agree(comm, mine)?;
     let mut softness = compliance.as_ref().map_or(0.0, Compliance::largest);
@@ -83,19 +113,62 @@ fn condensed(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: In
         None => None,
     };
     let interior = Interior::new(comm, mesh.clone(), moduli);
-    let parts = Parts { interface, compliance, softness, relaxation, interior };
+    let backing = Following { compliance, softness, relaxation, interior, secant: 1.0 };
+    condensed(comm, scene, mesh, u, (interface, backing))
+}
+
+fn remembering(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
+    let moduli = moduli(&scene.material);
+    let whole = if comm.rank() == 0 { whole_body(scene, &mesh, moduli).map(Some) } else { Ok(None) };
+    let source = match scene.layer.sides {
+        scene::Sides::Periodic => {
+            Source::Periodic { cells: column(scene, &mesh), columns: scene.layer.cells[0], moduli }
+        }
+        _ => Source::Schur,
+    };
+    let backing = Remembering::new(comm, agree(comm, whole)?, source)?;
+    let u = face_vector(comm, &mesh)?;
+    condensed(comm, scene, mesh, u, (interface, backing))
+}
+
+fn condensed<B: Backing + 'static>(
+    comm: &SimpleCommunicator,
+    scene: &Scene,
+    mesh: Mesh,
+    u: Vector,
+    (interface, backing): (Interface, B),
+) -> Result<Problem> {
+    let held: Vec<[bool; 2]> = mesh.face.unknown.iter().map(|&unknown| mesh.held[unknown as usize]).collect();
     let linear = if 2 * held.len() > LARGE_FACE { Linear::OwnIterative } else { Linear::Own };
-    let tangent = Matrix::shell(comm, here)?;
-    let strategy = Box::new(Condensed::new(parts, &u, &held, scene.solver.tolerance)?);
+    let tangent = Matrix::shell(comm, u.local_len())?;
+    let strategy = Box::new(Condensed::new(interface, backing, &u, &held, scene.solver.tolerance)?);
     Ok(Problem { strategy, tangent, u, phases: phases(scene), settings: settings(linear), mesh })
+}
+
+/// x, z of each face node, on rank 0.
+fn face_vector(comm: &SimpleCommunicator, mesh: &Mesh) -> Result<Vector> {
+    Vector::new(comm, if comm.rank() == 0 { 2 * mesh.face.unknown.len() } else { 0 })
 }
 
 /// The compliance of the face, by this rank alone.
 fn compliance(scene: &Scene, mesh: &Mesh, moduli: Moduli) -> Result<Compliance> {
     if scene.layer.sides == scene::Sides::Periodic {
-        return Ok(Compliance::of_periodic_layer(&layer(&scene.layer), mesh, moduli));
+        let cells: Vec<_> = column(scene, mesh).iter().map(|split| moduli.stiffness(split)).collect();
+        return Ok(Compliance::of_periodic_columns(&cells, scene.layer.cells[0]));
     }
     Compliance::by_schur_complement(&Body::new(SimpleCommunicator::self_comm(), mesh.clone(), moduli)?, moduli)
+}
+
+/// The whole body with its memory, on this rank alone.
+fn whole_body(scene: &Scene, mesh: &Mesh, moduli: Moduli) -> Result<(Bulk, Body)> {
+    let body = Body::new(SimpleCommunicator::self_comm(), mesh.clone(), moduli)?;
+    let bulk = bulk(scene, &body, moduli, &body.vector()?)?;
+    Ok((bulk, body))
+}
+
+/// The cells of one column of the layer, from the top down.
+fn column(scene: &Scene, mesh: &Mesh) -> Vec<quad4::Split> {
+    (0..scene.layer.cells[1]).map(|cell| quad4::stiffness(&mesh.corners(cell))).collect()
 }
 
 fn settings(linear: Linear) -> Settings {
@@ -119,53 +192,41 @@ fn moduli(material: &scene::Material) -> Moduli {
     Moduli { shear: g, bulk: 2.0 * g * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu)) }
 }
 
-/// One part where shear and bulk modulus relax together (or not at all), two where only the shear modulus does.
+/// One part where shear and bulk modulus relax together (or not at all), two where each goes its own way.
 fn bulk(scene: &Scene, body: &Body, moduli: Moduli, layout: &Vector) -> Result<Bulk> {
     let material = &scene.material;
-    let (series, times) = prony(material);
-    let part = |moduli, diagonal, series| Ok(Part { stiffness: body.stiffness(moduli, diagonal)?, series });
-    let constant_bulk = material.poisson_rule == Some(scene::PoissonRule::ConstantBulkModulus);
-    let parts = if constant_bulk && series.is_some() {
-        vec![
-            part(Moduli { bulk: 0.0, ..moduli }, moduli.shear, series)?,
-            part(Moduli { shear: 0.0, ..moduli }, 0.0, None)?,
-        ]
+    let (shear, bulk) = (material.shear_series(), material.bulk_series());
+    let times = common_times(&[&shear, &bulk]);
+    let part = |moduli, diagonal, prony: &Prony| {
+        Ok(Part { stiffness: body.stiffness(moduli, diagonal)?, series: series(prony, &times) })
+    };
+    let parts = if shear == bulk {
+        vec![part(moduli, moduli.shear, &shear)?]
     } else {
-        vec![part(moduli, moduli.shear, series)?]
+        vec![
+            part(Moduli { bulk: 0.0, ..moduli }, moduli.shear, &shear)?,
+            part(Moduli { shear: 0.0, ..moduli }, 0.0, &bulk)?,
+        ]
     };
     Bulk::new(parts, times, memory(material), layout)
 }
 
 /// The Prony series of the shear modulus and its relaxation times, s; no series for an elastic material.
 fn prony(material: &scene::Material) -> (Option<Series>, Vec<f64>) {
-    let prony = Prony { arms: material.arms.iter().map(|a| Arm { weight: a.weight, time: a.time }).collect() };
-    let times = prony.arms.iter().map(|arm| arm.time).collect();
-    let weights = || prony.arms.iter().map(|arm| arm.weight).collect();
-    let series = (!prony.arms.is_empty()).then(|| Series { long_term: prony.long_term(), weights: weights() });
-    (series, times)
+    let prony = material.shear_series();
+    let times = common_times(&[&prony]);
+    (series(&prony, &times), times)
+}
+
+/// A series over a list of relaxation times, s; none where nothing relaxes.
+fn series(prony: &Prony, times: &[f64]) -> Option<Series> {
+    (!prony.arms.is_empty()).then(|| Series { long_term: prony.long_term(), weights: prony.weights_over(times) })
 }
 
 fn memory(material: &scene::Material) -> Memory {
     match material.memory {
         scene::Memory::Exponential => Memory::Exponential,
         scene::Memory::BackwardEuler => Memory::BackwardEuler,
-    }
-}
-
-/// Under periodic sides every profile repeats with the layer's period.
-fn profile(scene: &Scene) -> Box<dyn Profile> {
-    let period = (scene.layer.sides == scene::Sides::Periodic).then_some(scene.layer.width);
-    fn repeat<P: Profile + 'static>(profile: P, centre: f64, period: Option<f64>) -> Box<dyn Profile> {
-        match period {
-            Some(period) => Box::new(Repeated { profile, centre, period }),
-            None => Box::new(profile),
-        }
-    }
-    match scene.indenter {
-        scene::Indenter::Harmonic { amplitude, wavelength } => Box::new(Harmonic { amplitude, wavelength }),
-        scene::Indenter::Parabola { radius, centre } => repeat(Parabola { radius, centre }, centre, period),
-        scene::Indenter::Circle { radius, centre } => repeat(Circle { radius, centre }, centre, period),
-        scene::Indenter::Wedge { slope, centre } => repeat(Wedge { slope, centre }, centre, period),
     }
 }
 

@@ -33,6 +33,8 @@ pub enum Error {
     /// A law cannot respond at the point it was asked for. Inside a solve the step is cut; outside it is an error of
     /// the scene.
     Domain(String),
+    /// What was computed is not what is known to be right: a defect of this program or of its installation. Exit code 1.
+    Mismatch(String),
     /// A library refused a call it should have taken: a defect of this program or of its installation. Exit code 1.
     Internal(String),
     /// A signal stopped the run, and a checkpoint was written. Exit code 5.
@@ -58,7 +60,7 @@ impl Error {
             Self::Solver(_) | Self::Domain(_) => 3,
             Self::File { .. } => 4,
             Self::Stopped(_) => 5,
-            Self::Internal(_) => 1,
+            Self::Mismatch(_) | Self::Internal(_) => 1,
         }
     }
 }
@@ -74,6 +76,7 @@ impl fmt::Display for Error {
             Self::Usage(text)
             | Self::Solver(text)
             | Self::Domain(text)
+            | Self::Mismatch(text)
             | Self::Internal(text)
             | Self::Stopped(text) => f.write_str(text),
         }

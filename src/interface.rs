@@ -3,6 +3,8 @@
 //! Every rank holds the whole face (it is one dimension smaller than the body) and evaluates all of it from the same
 //! numbers, so every rank sees the same error and the same totals; each rank assembles only the rows that it owns.
 
+mod oscillation;
+
 use nalgebra::{Matrix2, Vector2};
 
 use crate::element::mpjr::{self, Motion, Quadrature, Traction};
@@ -80,6 +82,8 @@ pub struct Totals {
     pub stick_fraction: f64,
     /// m
     pub max_penetration: f64,
+    /// How much the tractions oscillate from node to node; 1 = nothing but a checkerboard.
+    pub traction_oscillation: f64,
 }
 
 /// Fields at the face's nodes.
@@ -142,6 +146,17 @@ impl Interface {
         self.laws.friction.is_some()
     }
 
+    /// Whether friction still answers to the slip rate at this one, m/s.
+    pub fn grips(&self, slip_rate: f64) -> bool {
+        let answer = |law: &Friction, rate| law.shear(1.0, rate).by_rate;
+        self.laws.friction.as_ref().is_some_and(|law| answer(law, slip_rate) > 1e-6 * answer(law, 0.0))
+    }
+
+    /// The largest share of the pressure that friction takes: f.
+    pub fn largest_drag(&self) -> f64 {
+        self.laws.friction.as_ref().map_or(0.0, |law| law.shear(1.0, f64::MAX).shear)
+    }
+
     /// out = the residual with the indenter at `placement`.
     ///
     /// # Errors
@@ -194,9 +209,11 @@ impl Interface {
         self.place(placement)?;
         let mut totals = Totals::default();
         let (mut length, mut contact, mut stick) = (0.0, 0.0, 0.0);
+        let mut tractions = Vec::with_capacity(self.face.x.len());
         for (point, elevation) in self.points.iter().zip(&self.elevations) {
             let motion = motion(point, elevation, placement, surface);
             let traction = mpjr::traction(motion, self.laws.penalty, self.laws.friction.as_ref());
+            tractions.push(Vector2::new(traction.shear, traction.pressure));
             totals.normal_force += point.weight * traction.pressure;
             totals.tangential_force += point.weight * traction.shear;
             totals.hysteretic_force += point.weight * traction.pressure * elevation.slope;
@@ -211,6 +228,11 @@ impl Interface {
         }
         totals.contact_fraction = contact / length;
         totals.stick_fraction = if contact > 0.0 { stick / contact } else { 0.0 };
+        if !self.nodal {
+            let Fields { pressure, shear, .. } = self.fields(placement, surface)?;
+            tractions = shear.into_iter().zip(pressure).map(|(q, p)| Vector2::new(q, p)).collect();
+        }
+        totals.traction_oscillation = oscillation::oscillation(&self.face.edges, &tractions);
         Ok(totals)
     }
 

@@ -38,6 +38,20 @@ pub fn any<C: Communicator + CommunicatorCollectives>(comm: &C, mine: bool) -> b
     somewhere
 }
 
+/// Gives every rank the numbers that `make` returns on rank 0, or its error. Collective.
+pub fn share_numbers<C>(comm: &C, make: impl FnOnce() -> Result<Vec<f64>>) -> Result<Vec<f64>>
+where
+    C: Communicator + CommunicatorCollectives,
+{
+    let mine = if comm.rank() == 0 { make() } else { Ok(Vec::new()) };
+    let mut numbers = agree(comm, mine)?;
+    let mut length = numbers.len();
+    comm.process_at_rank(0).broadcast_into(&mut length);
+    numbers.resize(length, 0.0);
+    comm.process_at_rank(0).broadcast_into(&mut numbers[..]);
+    Ok(numbers)
+}
+
 /// Gives every rank the bytes of rank `root`. Collective.
 pub fn broadcast<C: Communicator + CommunicatorCollectives>(comm: &C, root: i32, bytes: &mut Vec<u8>) {
     let mut length = bytes.len();
@@ -59,6 +73,7 @@ fn encode(error: &Error) -> Vec<u8> {
         Error::Usage(text) => ("usage", vec![text.clone()]),
         Error::Solver(text) => ("solver", vec![text.clone()]),
         Error::Domain(text) => ("domain", vec![text.clone()]),
+        Error::Mismatch(text) => ("mismatch", vec![text.clone()]),
         Error::Internal(text) => ("internal", vec![text.clone()]),
         Error::Stopped(text) => ("stopped", vec![text.clone()]),
     };
@@ -77,6 +92,7 @@ fn decode(bytes: &[u8]) -> Error {
         "solver" => Error::Solver(next()),
         "domain" => Error::Domain(next()),
         "stopped" => Error::Stopped(next()),
+        "mismatch" => Error::Mismatch(next()),
         _ => Error::Internal(next()),
     }
 }
@@ -93,6 +109,7 @@ mod tests {
             Error::Usage("u".into()),
             Error::Solver("s".into()),
             Error::Domain("d".into()),
+            Error::Mismatch("m".into()),
             Error::Internal("i".into()),
             Error::Stopped("t".into()),
         ] {

@@ -97,6 +97,13 @@ impl NaturalOrder {
         Ok(Self { gather: Gather::new(layout, wanted)?, collected: wanted.len(), places })
     }
 
+    /// For vectors laid out like `layout`, all of which is on one rank in the order that it has there.
+    pub fn undivided(layout: &Vector) -> Result<Self> {
+        let entries: Vec<i32> = (0..layout.local_len() as i32).collect();
+        let places = (0..entries.len()).collect();
+        Ok(Self { gather: Gather::new(layout, &entries)?, collected: entries.len(), places })
+    }
+
     /// Adds the vector to the snapshot. Collective.
     pub fn save(&mut self, name: impl Into<String>, vector: &Vector, snapshot: &mut Snapshot) -> Result<()> {
         let mut values = vec![0.0; self.collected];

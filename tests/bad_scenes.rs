@@ -1,9 +1,9 @@
 //! Every scene of `tests/scenes/bad/` is refused with exactly the message that it carries.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
+use mpjr::composition;
 use mpjr::scene::{Source, read};
 
 #[test]
@@ -13,7 +13,12 @@ fn each_bad_scene_gives_its_message() {
     let mut wrong = Vec::new();
     for scene in &scenes {
         let source = Source { file: scene.file.clone(), overrides: scene.overrides() };
-        let (message, exit) = match read(&scene.text, &source) {
+        // What `mpjr check` does: the scene, then what it needs of other files.
+        let checked = read(&scene.text, &source).and_then(|read| {
+            let elevations = composition::elevations(&read, &scene.file)?;
+            composition::shape(&read, &scene.file, &elevations).map(|_| ())
+        });
+        let (message, exit) = match checked {
             Ok(_) => ("(accepted)".to_owned(), 0),
             Err(error) => {
                 let message = error.to_string();

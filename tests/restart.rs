@@ -2,14 +2,13 @@
 //! run that nothing befell.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use common::program::{assert_same, ends_with, mpjr, mpjr_on, output_of};
+use common::compare::{assert_same, ends_with, mpjr, mpjr_on, output_of};
 use mpjr::output::{checkpoint, reader::Results};
 
 /// Two phases, of which `slide` has `steps`; `material` and `solver` are the rest of their tables.

@@ -1,14 +1,13 @@
 //! Sweeps: which cases there are, that none is run twice or lost, and that shared phases change nothing.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use common::program::{assert_same, ends_with, mpjr, mpjr_on, output_of};
+use common::compare::{assert_same, ends_with, mpjr, mpjr_on, output_of};
 use mpjr::output::reader::Results;
 
 const SCENE: &str = r#"
@@ -271,5 +270,8 @@ fn bad_sweeps_are_refused() {
     }
     let (_directory, out) = prepare(&with("\"layer.width\" = \"2 *\""));
     let found = ends_with(&mut sweep(mpjr(), &out, &["--list"]), 2);
-    assert!(found.contains("follow.layer.width: is not a formula: ") && found.lines().count() == 1, "{found}");
+    assert!(
+        found.contains("follow.layer.width: \"2 *\" is not a formula of keys: column ") && found.lines().count() == 1,
+        "{found}"
+    );
 }

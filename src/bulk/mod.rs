@@ -65,11 +65,15 @@ impl Bulk {
         self.parts[0].stiffness.duplicate()
     }
 
+    /// c_p at step length `dt`, per part: the factor of K_p in the tangent.
+    pub fn secants(&self, dt: f64) -> Vec<f64> {
+        let factors = self.arms.as_ref().map(|arms| arms.factors(dt)).unwrap_or_default();
+        self.parts.iter().map(|part| part.series.as_ref().map_or(1.0, |series| series.secant(&factors))).collect()
+    }
+
     /// tangent = sum_p c_p K_p at step length `dt`.
     pub fn tangent(&self, dt: f64, tangent: &mut Matrix) -> Result<()> {
-        let factors = self.arms.as_ref().map(|arms| arms.factors(dt)).unwrap_or_default();
-        for (index, part) in self.parts.iter().enumerate() {
-            let secant = part.series.as_ref().map_or(1.0, |series| series.secant(&factors));
+        for (index, (part, secant)) in self.parts.iter().zip(self.secants(dt)).enumerate() {
             if index == 0 {
                 tangent.copy_from(&part.stiffness)?;
                 tangent.scale(secant)?;

@@ -31,6 +31,8 @@ pub struct Job<'a> {
     pub interrupt: &'a Interrupt,
     /// The scene.
     pub scene: &'a Scene,
+    /// Where it was read from: the files that it names are beside it.
+    pub file: &'a Path,
     /// The result file.
     pub out: &'a Path,
     /// Where it starts from.
@@ -56,7 +58,8 @@ pub struct Done {
 pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<Done> {
     let (comm, scene) = (job.comm, job.scene);
     let (clock, started) = (Instant::now(), SystemTime::now());
-    let Problem { mut strategy, mut tangent, mut u, phases, settings, mesh } = composition::build(comm, scene)?;
+    let Problem { mut strategy, mut tangent, mut u, phases, settings, mesh } =
+        composition::build(comm, scene, job.file)?;
     let begun = job.origin.load(comm, job.out, &phases)?;
     if let Some(begun) = &begun {
         strategy.restore(&begun.snapshot, &mut u)?;

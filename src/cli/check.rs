@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{is_first_process, summary};
-use crate::error::{Error, Result};
+use super::{is_first_process, profile, summary};
+use crate::composition;
+use crate::error::Result;
 use crate::scene::{self, Source};
 
 /// The arguments of `mpjr check`.
@@ -20,12 +21,16 @@ pub struct CheckArguments {
 
 /// Reads and checks the scene and prints what it resolves to.
 pub fn run(arguments: &CheckArguments) -> Result<()> {
-    let file = &arguments.scene;
-    let text = std::fs::read_to_string(file).map_err(|error| Error::file(file, format!("cannot be read: {error}")))?;
-    let scene = scene::read(&text, &Source { file: file.clone(), overrides: arguments.set.clone() })?;
-    if is_first_process() {
-        println!("{}", scene.to_toml().trim_end());
-        println!("\n{}", summary::plan(&scene));
+    // It needs no solver, so that one process does it for all.
+    if !is_first_process() {
+        return Ok(());
     }
+    let file = &arguments.scene;
+    let source = Source { file: file.clone(), overrides: arguments.set.clone() };
+    let scene = scene::read(&scene::open(file)?, &source)?;
+    let shape = composition::shape(&scene, file, &composition::elevations(&scene, file)?)?;
+    println!("{}", scene.to_toml().trim_end());
+    println!("\n{}", profile::describe(&scene, &shape));
+    println!("{}", summary::plan(&scene));
     Ok(())
 }

@@ -108,7 +108,9 @@ fn start_of(phases: &[Phase], count: usize) -> Result<Position> {
     let before = count.checked_sub(1).and_then(|last| phases.get(last)?.steps.last());
     let first = phases.get(count).and_then(|phase| phase.steps.first());
     match (before, first) {
-        (Some(before), Some(first)) => Ok(Position { phase: count, target: 0, now: before.time, dt: first.dt }),
+        (Some(before), Some(first)) => {
+            Ok(Position { phase: count, target: 0, now: before.time, dt: first.dt, cuts: 0 })
+        }
         _ => Err(Error::Internal(format!("no phase begins after {count} of {}", phases.len()))),
     }
 }

@@ -62,10 +62,12 @@ impl Progress {
             return Self::Lines { total, last: Instant::now() };
         };
         let bar = ProgressBar::with_draw_target(Some(total as u64), target);
+        // Within 80 columns: under mpirun the width is not known, and a line that wraps leaves pieces behind.
         // A template that is wrong is a defect that the default one survives.
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len}  {msg}  {elapsed} (left {eta})") {
+        if let Ok(style) = ProgressStyle::with_template("{bar:16} {pos}/{len}  {eta:>3} left  {msg}") {
             bar.set_style(style);
         }
+        bar.tick();
         Self::Bar(bar)
     }
 
@@ -76,20 +78,20 @@ impl Progress {
 
     /// Shows a step.
     pub fn show(&mut self, stage: &Stage<'_>) {
-        let text = format!(
-            "{} t = {:.4e} s  N = {:.5e}  Q = {:.5e} N/m  {} Newton",
-            stage.phase, stage.time, stage.normal_force, stage.tangential_force, stage.newton
-        );
+        let Stage { done, phase, time, normal_force, tangential_force, newton, phase_end } = *stage;
         match self {
             Self::Silent => {}
             Self::Claim { claim, total } => claim.borrow_mut().tell(stage.done, *total),
             Self::Bar(bar) => {
-                bar.set_position(stage.done as u64);
-                bar.set_message(text);
+                bar.set_position(done as u64);
+                bar.set_message(format!("{phase:.10}  N = {normal_force:.3e}  Q = {tangential_force:.3e} N/m"));
             }
             Self::Lines { total, last } => {
-                if stage.phase_end || last.elapsed() >= LINE_EVERY {
-                    println!("{}/{total}  {text}", stage.done);
+                if phase_end || last.elapsed() >= LINE_EVERY {
+                    println!(
+                        "{done}/{total}  {phase}  t = {time:.4e} s  N = {normal_force:.5e}  Q = {tangential_force:.5e} N/m  \
+                         {newton} Newton"
+                    );
                     *last = Instant::now();
                 }
             }

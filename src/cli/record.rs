@@ -11,10 +11,11 @@ use crate::error::{Error, Result};
 use crate::loading::Phase;
 use crate::output::bulk::Frame;
 use crate::output::checkpoint::{self, Checkpoint};
-use crate::output::{self, HistoryRow, InterfaceFrame, Recorder, Status};
+use crate::output::{self, HistoryRow, Recorder, Status};
 use crate::parallel::{agree, any};
 use crate::petsc::Vector;
 use crate::snapshot::Snapshot;
+use crate::solution;
 use crate::solve::{Counts, Observer, Report, TransientProblem};
 
 /// The observer of a run; only rank 0 has a recorder.
@@ -113,43 +114,18 @@ impl<'a> Recording<'a> {
     /// The step's row of the history, and its interface profile where one is due.
     fn record(&mut self, report: &mut Report<'_>) -> Result<()> {
         let Some(recorder) = &self.recorder else { return Ok(()) };
-        let mut contact = report.problem.contact()?;
-        let totals = contact.totals()?;
-        self.last = HistoryRow {
-            time: report.time,
-            phase: report.phase,
-            approach: contact.placement.approach,
-            sliding: contact.placement.sliding,
-            normal_force: totals.normal_force,
-            tangential_force: totals.tangential_force,
-            hysteretic_force: totals.hysteretic_force,
-            contact_fraction: totals.contact_fraction,
-            stick_fraction: totals.stick_fraction,
-            max_penetration: totals.max_penetration,
-            newton_iterations: report.newton,
-            ..HistoryRow::default()
-        };
+        self.last = solution::row(report)?;
         recorder.history(self.last)?;
         let due = report.planned && self.planned_steps.checked_rem(self.interface_every) == Some(0);
         if due || report.phase_end {
-            let fields = contact.fields()?;
-            let component = |i: usize| contact.surface.displacement.iter().skip(i).step_by(2).copied().collect();
-            recorder.interface(InterfaceFrame {
-                time: report.time,
-                pressure: fields.pressure,
-                shear: fields.shear,
-                gap: fields.gap,
-                slip_rate: fields.slip_rate,
-                displacement_x: component(0),
-                displacement_z: component(1),
-            })?;
+            recorder.interface(solution::frame(report)?)?;
         }
         self.progress.show(&Stage {
             done: self.planned_steps,
             phase: &self.phases[report.phase].name,
             time: report.time,
-            normal_force: totals.normal_force,
-            tangential_force: totals.tangential_force,
+            normal_force: self.last.normal_force,
+            tangential_force: self.last.tangential_force,
             newton: report.newton,
             phase_end: report.phase_end,
         });

@@ -41,13 +41,7 @@ pub fn run(arguments: &RunArguments) -> Result<()> {
     let interrupt = Interrupt::watch()?;
     let world = session.world();
     let outcome = solve((&session, &world), &interrupt, arguments);
-    if let Err(error @ Error::Internal(_)) = &outcome
-        && world.size() > 1
-    {
-        // The other ranks may wait for this one inside a library.
-        eprintln!("mpjr: rank {}: {error}", world.rank());
-        world.abort(error.exit_code());
-    }
+    super::abort_if_alone(&world, &outcome);
     outcome
 }
 
@@ -58,10 +52,9 @@ fn solve(
     arguments: &RunArguments,
 ) -> Result<()> {
     let file = &arguments.scene;
-    let text = share_text(world, || {
-        std::fs::read_to_string(file).map_err(|error| Error::file(file, format!("cannot be read: {error}")))
-    })?;
-    let scene = scene::read(&text, &Source { file: file.clone(), overrides: arguments.set.clone() })?;
+    let open = |file: &Path| share_text(world, || scene::open(file));
+    let source = Source { file: file.clone(), overrides: arguments.set.clone() };
+    let scene = scene::read_with(&open(file)?, &source, &open)?;
     let out = arguments.out.clone().unwrap_or_else(|| default_output(file));
     let mut origin = Origin::Rest;
     if arguments.resume {
@@ -77,7 +70,7 @@ fn solve(
         origin = Origin::Checkpoint;
     }
 
-    let job = Job { session, comm: world, interrupt, scene: &scene, out: &out, origin, keep_state: false };
+    let job = Job { session, comm: world, interrupt, scene: &scene, file, out: &out, origin, keep_state: false };
     let done = case::solve(&job, |steps| Progress::new(steps, world.rank() == 0))?;
     if world.rank() == 0 {
         print!("{}", summary::outcome(&scene, &done.outcome, &done.last));

@@ -3,9 +3,11 @@
 use std::fmt::Write;
 use std::time::Duration;
 
+use super::material;
+use crate::composition::{self, Form};
 use crate::output::{HistoryRow, Status};
 use crate::petsc;
-use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides};
+use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
 use crate::solve::Counts;
 
 /// What is modelled and what is not: (modelled, not modelled).
@@ -13,6 +15,10 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
     let (mut yes, mut no) = (Vec::new(), Vec::new());
     let arms = scene.material.arms.len();
     match (arms, scene.material.poisson_rule) {
+        (_, Some(PoissonRule::BulkArms)) => {
+            let bulk = scene.material.bulk_arms.len();
+            yes.push(format!("viscoelastic memory: {arms} arm(s) of the shear modulus, {bulk} of the bulk modulus"));
+        }
         (0, _) => no.push("memory (linear elastic)".to_owned()),
         (_, Some(PoissonRule::ConstantBulkModulus)) => {
             yes.push(format!("viscoelastic memory: {arms} arm(s) of the shear modulus, constant bulk modulus"));
@@ -26,8 +32,9 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
         None => no.push("friction (symmetric solver)".to_owned()),
     }
     yes.push(format!(
-        "contact: penalty {:.3e} Pa/m, {} quadrature",
+        "contact: penalty {:.3e} Pa/m ({:.2e} of the compliance to the wave the layer is stiffest to), {} quadrature",
         scene.contact.penalty,
+        added_compliance(scene.contact.penalty, &scene.layer, &scene.material),
         match scene.contact.quadrature {
             Quadrature::Nodal => "nodal",
             Quadrature::Gauss => "two-point Gauss",
@@ -57,6 +64,7 @@ pub fn plan(scene: &Scene) -> String {
     // Writing to a string cannot fail.
     let _ = writeln!(text, "modelled:      {}", yes.join("\n               "));
     let _ = writeln!(text, "not modelled:  {}", no.join("\n               "));
+    text += &material::lines(scene);
     let _ = writeln!(text, "mesh:          {nx} x {nz} cells, {sides} sides, {} unknowns", scene.unknowns());
     let _ = writeln!(
         text,
@@ -65,10 +73,7 @@ pub fn plan(scene: &Scene) -> String {
         scene.steps(),
         scene.duration()
     );
-    let _ = writeln!(
-        text,
-        "strategy:      monolithic: all unknowns in one sparse system, factorised at each Newton iteration"
-    );
+    let _ = writeln!(text, "strategy:      {}", strategy(scene));
     let _ = write!(
         text,
         "estimate:      {} per step, {} in all on one core; {:.1} GB of memory",
@@ -98,7 +103,7 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     let Outcome { status, ranks, setup, total, counts } = outcome;
     let (yes, no) = modelled(scene);
     let blas = match petsc::blas_library() {
-        "reference" => "reference BLAS (install libopenblas0-pthread: 2 to 5 times faster)",
+        "reference" => "the reference (OpenBLAS is faster: Debian's libopenblas0-pthread)",
         name => name,
     };
     let linear = counts.total.saturating_sub(counts.assembly + counts.output);
@@ -110,8 +115,9 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{:<15}{} at t = {:.6} s", "status:", status.as_str(), last.time);
-    let _ = writeln!(text, "{:<15}{}", "modelled:", yes.join("; "));
-    let _ = writeln!(text, "{:<15}{}", "not modelled:", no.join("; "));
+    let _ = writeln!(text, "{:<15}{}", "modelled:", yes.join("\n               "));
+    let _ = writeln!(text, "{:<15}{}", "not modelled:", no.join("\n               "));
+    text += &material::lines(scene);
     let _ = writeln!(
         text,
         "{:<15}N = {:.6e}  Q = {:.6e}  hysteretic = {:.6e} N/m",
@@ -119,25 +125,45 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     );
     let _ = writeln!(
         text,
-        "{:<15}{:.4} of the face, {:.4} of it sticking; largest penetration {:.3e} m",
+        "{:<15}{:.4} of the face, {:.4} of it sticking; penetration {:.1e} m",
         "final contact:", last.contact_fraction, last.stick_fraction, last.max_penetration
     );
     let _ = writeln!(text, "{:<15}{} steps, {} Newton iterations{pieces}", "work:", counts.steps, counts.newton);
     let _ = writeln!(
         text,
-        "{:<15}{} on {ranks} rank(s): set-up {}, assembly {}, linear solver {}, output {}; {blas}; peak {:.2} GB a rank",
+        "{:<15}{} on {ranks} rank(s): set-up {}, assembly {},\n{:<15}linear solver {}, output {}",
         "time:",
         duration(total),
         duration(setup),
         duration(&counts.assembly),
+        "",
         duration(&linear),
-        duration(&counts.output),
-        petsc::peak_memory() as f64 / 1e9
+        duration(&counts.output)
     );
+    let _ = writeln!(text, "{:<15}at most {:.2} GB a rank", "memory:", petsc::peak_memory() as f64 / 1e9);
+    let _ = writeln!(text, "{:<15}{blas}", "BLAS:");
     text
 }
 
-/// A rough cost, from measured factorisation times of 2-D meshes: within a factor of three on a recent core.
+/// How the scene is solved, and why.
+fn strategy(scene: &Scene) -> String {
+    let asked = if scene.solver.strategy == Strategy::Auto { "auto picked " } else { "" };
+    match composition::form(scene) {
+        Form::Monolithic => "monolithic: all unknowns in one sparse system, factorised at each Newton iteration".into(),
+        Form::Following => format!(
+            "{asked}condensed: shear and bulk modulus keep their ratio, so that the interior follows the contact\n\
+             {:15}face; Newton runs on the nodes in contact",
+            ""
+        ),
+        Form::Remembering => format!(
+            "{asked}condensed: only the shear modulus relaxes, so that the interior has a memory of its own; one\n\
+             {:15}factorisation per step length, two interior solves per step, Newton on the nodes in contact",
+            ""
+        ),
+    }
+}
+
+/// A rough cost, from measured times: within a factor of three on a recent core.
 struct Estimate {
     /// s per step.
     step: f64,
@@ -148,14 +174,28 @@ struct Estimate {
 impl Estimate {
     fn of(scene: &Scene) -> Self {
         let unknowns = scene.unknowns() as f64;
-        // Nested dissection in the plane: n^1.5 operations, n log n entries. Half for a symmetric factorisation.
+        let face = 2.0 * (scene.layer.cells[0] + 1) as f64;
+        let newton = 4.0;
+        // Nested dissection in the plane: n^1.5 operations, n log n entries; half of both when symmetric.
+        let entries = |symmetry: f64| 8.0 * 5.0 * unknowns * unknowns.max(2.0).log2() * symmetry;
+        let (matrix, vector) = (18.0 * 12.0 * unknowns, 8.0 * unknowns);
+        let arms = (scene.material.arms.len() + 4) as f64;
+        // Half of the face in contact: a small dense factorisation and some products with the compliance.
+        let contact = newton * (2e-10 * (face / 2.0).powi(3).min(face.powi(2) * 300.0) + 3e-9 * face * face);
+        let compliance = 8.0 * face * face;
         let symmetry = if scene.friction.is_some() { 1.0 } else { 0.6 };
-        let newton = 3.5;
-        let factorisation = 1.3e-8 * unknowns.powf(1.5) * symmetry;
-        let assembly = 1.0e-6 * unknowns;
-        let entries = 5.0 * unknowns * unknowns.max(2.0).log2() * symmetry;
-        let matrices = 3.0 * 18.0 * 12.0 * unknowns;
-        Self { step: newton * (factorisation + assembly), memory: 5e7 + 8.0 * entries + matrices }
+        let (step, memory) = match composition::form(scene) {
+            Form::Monolithic => (
+                newton * (1.3e-8 * unknowns.powf(1.5) * symmetry + 1.0e-6 * unknowns),
+                entries(symmetry) + 3.0 * matrix + arms * vector,
+            ),
+            Form::Following => (contact, compliance + 80.0 * unknowns),
+            Form::Remembering => (
+                contact + 2.0 * 6e-7 * unknowns * (1.0 + 0.05 * unknowns.max(2.0).log2()),
+                compliance + entries(0.6) + 3.0 * matrix + arms * vector,
+            ),
+        };
+        Self { step, memory: 5e7 + memory }
     }
 }
 

@@ -28,9 +28,9 @@ impl Cholesky {
         check(unsafe { ffi::MatSolve(self.raw, b.raw(), x.raw()) })
     }
 
-    /// The inverse of the Schur complement of `matrix` onto the unknowns `kept`: the rows and columns `kept` of
-    /// matrix^-1, column-major. On one rank only.
-    pub fn inverse_schur(matrix: &Matrix, kept: &[i32]) -> Result<Vec<f64>> {
+    /// The factorisation, and the rows and columns `kept` of matrix^-1, column-major: the inverse of the Schur
+    /// complement onto those unknowns. On one rank only.
+    pub fn with_inverse_schur(matrix: &Matrix, kept: &[i32]) -> Result<(Self, Vec<f64>)> {
         let count = kept.len() as ffi::PetscInt;
         let factor = Self::symbolic(matrix, |raw| {
             let mut set = null_mut();
@@ -54,7 +54,7 @@ impl Cholesky {
             check(ffi::MatDenseRestoreArrayRead(schur, &mut values))?;
             let inverted = ffi::MatFactorSchurStatus_MAT_FACTOR_SCHUR_INVERTED;
             check(ffi::MatFactorRestoreSchurComplement(factor.raw, &mut schur, inverted))?;
-            Ok(inverse)
+            Ok((factor, inverse))
         }
     }
 

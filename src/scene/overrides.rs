@@ -17,6 +17,16 @@ pub(super) fn apply(table: &mut Table, overrides: &[String], file: &Path) -> Res
     Ok(())
 }
 
+/// Whether an override is of a material as a whole or of its file, and so decides what other keys there are.
+pub(super) fn names_material(typed: &str) -> bool {
+    let keys = split(typed).map_or_else(|_| Vec::new(), |(path, _)| split_path(path));
+    match keys.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
+        ["material"] | ["material", "file"] | ["material", _, "file"] => true,
+        ["material", index] => index.parse::<usize>().is_ok(),
+        _ => false,
+    }
+}
+
 /// Sets `path`, dotted keys such as `layer.width`, in the table of a scene. An element of an array is addressed by
 /// its index from 0 or, where it has one, by its name (`phase.slide.velocity`); a key with a dot in it is quoted
 /// (`phase."1.5 s".steps`). Tables on the way are made. Whether the keys exist is for the reader of the table to say.

@@ -1,6 +1,8 @@
 //! The keys of a scene: which there are, what each accepts, and what it becomes. What one key has to do with another
 //! is in `checks`.
 
+mod indenter;
+pub(super) mod material;
 pub(super) mod phase;
 
 use std::path::Path;
@@ -9,19 +11,31 @@ use toml::Table;
 
 use super::keys::{self, Quantity, Section};
 use super::{
-    Arm, Contact, Friction, Indenter, Layer, Material, Memory, Output, PoissonRule, Quadrature, Scene, Sides, Solver,
-    Source, Strategy, When, checks, overrides,
+    Contact, Friction, Layer, Load, Material, Output, Phase, Quadrature, Scene, Sides, Solver, Source, Strategy, When,
+    checks, include, overrides, penalty_for,
 };
 use crate::error::{Error, Result};
 
-/// Reads and checks a scene.
+/// Reads and checks a scene on one process.
 ///
-/// `text` is the content of `source.file`; nothing else is opened, so that every rank can read what rank 0 broadcast.
-/// The first thing that is wrong is the error.
+/// `text` is the content of `source.file`; of other files only those of materials are opened. The first thing that is
+/// wrong is the error.
 pub fn read(text: &str, source: &Source) -> Result<Scene> {
-    let mut table = parse(text, &source.file)?;
-    overrides::apply(&mut table, &source.overrides, &source.file)?;
-    from_table(&table, &source.file).map_err(|error| overrides::blame(error, &source.overrides))
+    read_with(text, source, &include::open)
+}
+
+/// Reads and checks a scene whose other files are come by with `load`, which all ranks call in the same order.
+///
+/// Overrides that name the file of a material act before it is read, all others after, on what it says.
+pub fn read_with(text: &str, source: &Source, load: Load) -> Result<Scene> {
+    let Source { file, overrides: typed } = source;
+    let mut table = parse(text, file)?;
+    let (files, others): (Vec<_>, Vec<_>) = typed.iter().cloned().partition(|typed| overrides::names_material(typed));
+    let blame = |error| overrides::blame(error, typed);
+    overrides::apply(&mut table, &files, file)?;
+    include::include(&mut table, file, load).map_err(blame)?;
+    overrides::apply(&mut table, &others, file)?;
+    from_table(&table, file).map_err(blame)
 }
 
 /// The TOML of a file, not yet looked into.
@@ -35,9 +49,12 @@ pub fn parse(text: &str, file: &Path) -> Result<Table> {
     })
 }
 
-/// Reads and checks a scene whose TOML has been parsed, and perhaps changed by [`super::set`].
+/// Reads and checks a scene whose TOML has been parsed, and perhaps changed by [`super::set`]. Materials that still
+/// are in files, because the table has not been through [`include::include`], are read from there.
 pub fn from_table(table: &Table, file: &Path) -> Result<Scene> {
-    let root = Section::root(file, table);
+    let mut table = table.clone();
+    include::include(&mut table, file, &include::open)?;
+    let root = Section::root(file, &table);
     root.later(&[
         ("mesh", "use [layer]"),
         ("element", "remove it: the element is the 4-node quadrilateral"),
@@ -45,23 +62,28 @@ pub fn from_table(table: &Table, file: &Path) -> Result<Scene> {
         ("reference_temperature", NO_TEMPERATURE),
     ])?;
     root.only(&["title", "layer", "material", "indenter", "contact", "friction", "phase", "solver", "output"])?;
+    let title = title(&root, file)?;
+    let layer = layer(&root.section("layer")?)?;
+    // The history says over which times the material must hold.
+    let phases = phase::read_all(&root)?;
+    let material = material(&root, &phases)?;
     let mut scene = Scene {
-        title: title(&root, file)?,
-        layer: layer(&root.section("layer")?)?,
-        material: material(&root)?,
-        indenter: indenter(&root.section("indenter")?)?,
-        contact: contact(&root.section("contact")?)?,
+        indenter: indenter::read(&root.section("indenter")?)?,
+        contact: contact(&root.section("contact")?, &layer, &material)?,
         friction: root.optional_section("friction")?.as_ref().map(friction).transpose()?,
-        phases: phase::read_all(&root)?,
+        phases,
         solver: solver(root.optional_section("solver")?.as_ref())?,
         output: output(root.optional_section("output")?.as_ref())?,
+        title,
+        layer,
+        material,
     };
     checks::all(&scene, file)?;
     scene.clamp_moments();
     Ok(scene)
 }
 
-const NO_TEMPERATURE: &str = "remove it: the temperature stays the one of the material's data";
+const NO_TEMPERATURE: &str = "give temperature in [material]: it is the same everywhere and at all times";
 
 fn title(root: &Section, file: &Path) -> Result<String> {
     let stem = || file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -94,136 +116,42 @@ fn layer(section: &Section) -> Result<Layer> {
 /// Whole numbers from 1.
 const COUNT: std::ops::RangeInclusive<usize> = 1..=usize::MAX;
 
-fn material(root: &Section) -> Result<Material> {
-    const RATIO: Quantity = Quantity {
-        what: "a ratio above -1 and below 0.5 (0.5 is incompressible; come near it with, say, 0.499)",
-        accepts: |ratio| ratio > -1.0 && ratio < 0.5,
-    };
-    const RULES: [(&str, PoissonRule); 2] =
-        [("constant_ratio", PoissonRule::ConstantRatio), ("constant_bulk_modulus", PoissonRule::ConstantBulkModulus)];
-    const MEMORIES: [(&str, Memory); 2] =
-        [("exponential", Memory::Exponential), ("backward_euler", Memory::BackwardEuler)];
-
+fn material(root: &Section, phases: &[Phase]) -> Result<Material> {
     if root.values("material", "").is_ok_and(|regions| !regions.is_empty()) {
         let reason = "several materials are not supported by this version; give one [material] table";
         return Err(root.error("material", reason));
     }
-    let section = root.section("material")?;
-    section.later(&[
-        ("file", "write its table in the scene"),
-        ("fractional", "give shear_modulus and arms, a Prony series of the power law"),
-        ("bulk_arms", "choose a poisson_rule"),
-        ("temperature", NO_TEMPERATURE),
-        ("reference_temperature", NO_TEMPERATURE),
-        ("wlf", NO_TEMPERATURE),
-        ("arrhenius", NO_TEMPERATURE),
-    ])?;
-    section.only(&["shear_modulus", "young_modulus", "poisson_ratio", "arms", "poisson_rule", "memory"])?;
-    let poisson_ratio = section.number("poisson_ratio", RATIO)?;
-    let arms = arms(&section)?;
-    let poisson_rule = section.optional_choice("poisson_rule", &RULES, &["bulk_arms"])?;
-    if !arms.is_empty() && poisson_rule.is_none() {
-        let reason = "missing, and required with arms: give \"constant_ratio\" (the bulk modulus relaxes with the \
-                      shear modulus) or \"constant_bulk_modulus\" (it stays)";
-        return Err(section.error("poisson_rule", reason));
-    }
-    Ok(Material {
-        shear_modulus: shear_modulus(&section, poisson_ratio)?,
-        poisson_ratio,
-        arms,
-        poisson_rule,
-        memory: section.optional_choice("memory", &MEMORIES, &[])?.unwrap_or(Memory::Exponential),
-    })
+    material::read(&root.section("material")?, &[], super::material::band(phases))
 }
 
-/// The instantaneous shear modulus, given as itself or as Young's modulus.
-fn shear_modulus(section: &Section, poisson_ratio: f64) -> Result<f64> {
-    const MODULUS: Quantity = Quantity::positive("a positive modulus in Pa");
-
-    let shear = section.optional_number("shear_modulus", MODULUS)?;
-    let young = section.optional_number("young_modulus", MODULUS)?;
-    match (shear, young) {
-        (Some(_), Some(_)) => Err(section.error("young_modulus", "give shear_modulus or young_modulus, not both")),
-        (Some(shear), None) => Ok(shear),
-        (None, Some(young)) => Ok(checks::shear_from_young(young, poisson_ratio)),
-        (None, None) => Err(section.missing("shear_modulus", "it, or young_modulus, in Pa")),
-    }
-}
-
-fn arms(section: &Section) -> Result<Vec<Arm>> {
-    const WEIGHT: Quantity = Quantity {
-        what: "a share of the instantaneous modulus, above 0 and at most 1",
-        accepts: |weight| weight > 0.0 && weight <= 1.0,
-    };
-    const TIME: Quantity = Quantity::positive("a positive relaxation time in s");
-
-    let arm = |section: &Section| {
-        section.only(&["weight", "time"])?;
-        Ok(Arm { weight: section.number("weight", WEIGHT)?, time: section.number("time", TIME)? })
-    };
-    let sections = section.sections("arms", "an array of tables { weight = ..., time = ... }")?;
-    let arms: Vec<Arm> = sections.iter().map(arm).collect::<Result<_>>()?;
-    checks::weights(&arms).map_err(|reason| section.error("arms", reason))?;
-    Ok(arms)
-}
-
-fn indenter(section: &Section) -> Result<Indenter> {
-    #[derive(Clone, Copy)]
-    enum Profile {
-        Harmonic,
-        Parabola,
-        Circle,
-        Wedge,
-    }
-    const PROFILES: [(&str, Profile); 4] = [
-        ("harmonic", Profile::Harmonic),
-        ("parabola", Profile::Parabola),
-        ("circle", Profile::Circle),
-        ("wedge", Profile::Wedge),
-    ];
-    const LATER: [&str; 3] = ["expression", "sampled", "rough"];
-    const LENGTH: Quantity = Quantity::positive("a positive length in m");
-    const POSITION: Quantity = Quantity::any("a position in m");
-    const SLOPE: Quantity = Quantity::positive("a positive slope");
-
-    // The profile decides which keys there are; where it is absent, perhaps it is misspelt.
-    if !section.has("profile") {
-        section.only(&["profile", "amplitude", "wavelength", "radius", "centre", "slope"])?;
-    }
-    match section.choice("profile", &PROFILES, &LATER)? {
-        Profile::Harmonic => {
-            section.only(&["profile", "amplitude", "wavelength"])?;
-            let amplitude = section.number("amplitude", LENGTH)?;
-            Ok(Indenter::Harmonic { amplitude, wavelength: section.number("wavelength", LENGTH)? })
-        }
-        Profile::Parabola => {
-            section.only(&["profile", "radius", "centre"])?;
-            let radius = section.number("radius", LENGTH)?;
-            Ok(Indenter::Parabola { radius, centre: section.number("centre", POSITION)? })
-        }
-        Profile::Circle => {
-            section.only(&["profile", "radius", "centre"])?;
-            let radius = section.number("radius", LENGTH)?;
-            Ok(Indenter::Circle { radius, centre: section.number("centre", POSITION)? })
-        }
-        Profile::Wedge => {
-            section.only(&["profile", "slope", "centre"])?;
-            let slope = section.number("slope", SLOPE)?;
-            Ok(Indenter::Wedge { slope, centre: section.number("centre", POSITION)? })
-        }
-    }
-}
-
-fn contact(section: &Section) -> Result<Contact> {
-    const PENALTY: Quantity = Quantity::positive("a positive stiffness in Pa/m");
+fn contact(section: &Section, layer: &Layer, material: &Material) -> Result<Contact> {
     const QUADRATURES: [(&str, Quadrature); 2] = [("nodal", Quadrature::Nodal), ("gauss", Quadrature::Gauss)];
 
-    section.later(&[("tolerance", "give penalty"), ("method", "remove it: contact is enforced by penalty")])?;
-    section.only(&["penalty", "quadrature"])?;
+    section.later(&[("method", "remove it: contact is enforced by penalty")])?;
+    section.only(&["penalty", "tolerance", "quadrature"])?;
     Ok(Contact {
-        penalty: section.number("penalty", PENALTY)?,
+        penalty: penalty(section, layer, material)?,
         quadrature: section.optional_choice("quadrature", &QUADRATURES, &[])?.unwrap_or(Quadrature::Nodal),
     })
+}
+
+/// The penalty, given as itself or as the compliance that it may add.
+fn penalty(section: &Section, layer: &Layer, material: &Material) -> Result<f64> {
+    const PENALTY: Quantity = Quantity::positive("a positive stiffness in Pa/m");
+    const TOLERANCE: Quantity =
+        Quantity { what: "a relative tolerance above 0 and below 1", accepts: |value| value > 0.0 && value < 1.0 };
+
+    let penalty = section.optional_number("penalty", PENALTY)?;
+    let tolerance = section.optional_number("tolerance", TOLERANCE)?;
+    match (penalty, tolerance) {
+        (Some(_), Some(_)) => Err(section.error("tolerance", "give penalty or tolerance, not both")),
+        (Some(penalty), None) => Ok(penalty),
+        (None, Some(tolerance)) => match penalty_for(tolerance, layer, material) {
+            penalty if penalty.is_finite() && penalty > 0.0 => Ok(penalty),
+            penalty => Err(section.error("tolerance", format!("gives a penalty of {penalty:?} Pa/m; give another"))),
+        },
+        (None, None) => Err(section.missing("penalty", "it in Pa/m, or tolerance")),
+    }
 }
 
 fn friction(section: &Section) -> Result<Friction> {
@@ -247,14 +175,15 @@ fn friction(section: &Section) -> Result<Friction> {
 fn solver(section: Option<&Section>) -> Result<Solver> {
     const TOLERANCE: Quantity =
         Quantity { what: "a relative tolerance above 0 and below 1", accepts: |value| value > 0.0 && value < 1.0 };
-    const STRATEGIES: [(&str, Strategy); 2] = [("auto", Strategy::Auto), ("monolithic", Strategy::Monolithic)];
+    const STRATEGIES: [(&str, Strategy); 3] =
+        [("auto", Strategy::Auto), ("monolithic", Strategy::Monolithic), ("condensed", Strategy::Condensed)];
 
     let default = Solver { strategy: Strategy::Auto, tolerance: 1e-8 };
     let Some(section) = section else { return Ok(default) };
     section.later(&[("preset", "give tolerance")])?;
     section.only(&["strategy", "tolerance"])?;
     Ok(Solver {
-        strategy: section.optional_choice("strategy", &STRATEGIES, &["condensed"])?.unwrap_or(default.strategy),
+        strategy: section.optional_choice("strategy", &STRATEGIES, &[])?.unwrap_or(default.strategy),
         tolerance: section.optional_number("tolerance", TOLERANCE)?.unwrap_or(default.tolerance),
     })
 }

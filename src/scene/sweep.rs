@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::keys::{self, Section};
-use super::{Scene, from_table, get, parse, set};
+use super::{Scene, from_table, get, include, parse, set};
 use crate::error::{Error, Result};
 
 /// More cases than this are a mistake.
@@ -16,6 +16,8 @@ const MOST_CASES: usize = 100_000;
 /// A sweep with its cases, in order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sweep {
+    /// The scene file.
+    pub file: PathBuf,
     /// The varied keys, slowest first.
     pub keys: Vec<String>,
     /// One case for each combination of their values.
@@ -56,9 +58,13 @@ pub fn read(text: &str, file: &Path) -> Result<String> {
         None => return Err(root.missing("scene", "the name of a scene file")),
     };
     let base = open(&scene_file).map_err(|reason| root.error("scene", reason))?;
-    let base = parse(&base, &scene_file)?;
+    let mut base = parse(&base, &scene_file)?;
     // A scene that is wrong by itself says so in its own name, unless what is wrong is varied.
     let vary = vary(&root)?;
+    // Its keys can vary only once the material is there.
+    if !vary.iter().any(|(key, _)| key.starts_with("material") && key.ends_with("file")) {
+        include(&mut base, &scene_file, &super::open)?;
+    }
     let follow = follow::read(&root, &vary.iter().map(|(key, _)| key.as_str()).collect::<Vec<_>>())?;
 
     let count = vary.iter().try_fold(1_usize, |count, (_, values)| count.checked_mul(values.len()));
@@ -74,6 +80,7 @@ pub fn read(text: &str, file: &Path) -> Result<String> {
             let value = whole_table(&table, key, value, file)?;
             set(&mut table, key, value, file)?;
         }
+        include(&mut table, &scene_file, &super::open)?;
         follow.iter().try_for_each(|follow| follow.apply(&mut table, file))?;
         let values: Vec<String> = chosen.iter().map(|(_, value)| shown(value)).collect();
         let label = label(&keys, &values);
@@ -107,7 +114,7 @@ pub fn receive(text: &str) -> Result<Sweep> {
         Ok(Case { values: texts(case.get("values")).ok_or_else(garbled)?, scene: from_table(scene, &file)? })
     });
     let cases = cases.collect::<Result<_>>()?;
-    Ok(Sweep { keys: texts(table.get("keys")).ok_or_else(garbled)?, cases })
+    Ok(Sweep { file: file.clone(), keys: texts(table.get("keys")).ok_or_else(garbled)?, cases })
 }
 
 /// The varied keys with their values.

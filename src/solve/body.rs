@@ -19,6 +19,13 @@ pub struct Moduli {
     pub bulk: f64,
 }
 
+impl Moduli {
+    /// The stiffness of an element of these moduli.
+    pub fn stiffness(&self, split: &quad4::Split) -> quad4::Stiffness {
+        split.deviatoric * self.shear + split.volumetric * self.bulk
+    }
+}
+
 /// A mesh distributed over the ranks of a communicator, of one material.
 pub struct Body {
     mesh: Mesh,
@@ -73,8 +80,7 @@ impl Body {
     pub fn stiffness(&self, moduli: Moduli, diagonal: f64) -> Result<Matrix> {
         let mut matrix = Matrix::new(&self.comm, &self.pattern)?;
         for &cell in &self.numbering.cells {
-            let split = quad4::stiffness(&self.mesh.corners(cell));
-            let stiffness = split.deviatoric * moduli.shear + split.volumetric * moduli.bulk;
+            let stiffness = moduli.stiffness(&quad4::stiffness(&self.mesh.corners(cell)));
             let nodes = self.mesh.cell_unknowns(cell).map(|unknown| self.numbering.global[unknown as usize]);
             // Column-major and symmetric, so row-major too.
             matrix.add_blocks(&nodes, stiffness.as_slice())?;

@@ -1,11 +1,9 @@
 //! Solving the transient problem: what a strategy must offer, and the driver that steps it.
 
 mod body;
-mod compliance;
 mod condensed;
 mod driver;
 mod face;
-mod interior;
 mod monolithic;
 
 use crate::error::{Error, Result};
@@ -15,10 +13,8 @@ use crate::petsc::{Matrix, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 
 pub use body::{Body, Moduli};
-pub use compliance::Compliance;
-pub use condensed::{Condensed, LARGE_FACE, Parts, Relaxation};
+pub use condensed::{Backing, Compliance, Condensed, Following, Interior, LARGE_FACE, Relaxation, Remembering, Source};
 pub use driver::{Counts, Driver, Limits, Position};
-pub use interior::Interior;
 pub use monolithic::Monolithic;
 
 /// A discretised contact problem in a form that TS and SNES can step.
@@ -40,6 +36,8 @@ pub trait TransientProblem {
     fn solve(&mut self, _b: &Vector, _x: &mut Vector) -> Result<()> {
         Err(Error::Internal("the tangent of this problem is a matrix".into()))
     }
+    /// Improves on `u`, the accepted state, as the point from which Newton's method begins.
+    fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()>;
     /// Judges a Newton iterate by the norm of its residual.
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
     /// Takes the accepted state to the end of an accepted step.

@@ -94,6 +94,17 @@ impl TransientProblem for Monolithic {
         tangent.assemble()
     }
 
+    fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        let carried = self.face.carried(step)?;
+        let mut values = u.view_mut()?;
+        for (node, distance) in carried {
+            if let (_, Some(row)) = self.rows[node] {
+                values[row] += distance;
+            }
+        }
+        Ok(())
+    }
+
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
         let noise = self.face.noise();
         self.face.test(iteration, norm, self.tolerance, noise)

@@ -113,6 +113,7 @@ impl Group {
             comm: &self.comm,
             interrupt,
             scene: &shared.scene,
+            file: &tasks.sweep.file,
             out: &shared.results,
             origin: Origin::Rest,
             keep_state: true,
@@ -145,7 +146,16 @@ impl Group {
             Some(shared) => Origin::Shared { results: &shared.results, phases: shared.phases },
             None => Origin::Rest,
         };
-        let job = Job { session, comm: &self.comm, interrupt, scene, out: &out, origin, keep_state: false };
+        let job = Job {
+            session,
+            comm: &self.comm,
+            interrupt,
+            scene,
+            file: &tasks.sweep.file,
+            out: &out,
+            origin,
+            keep_state: false,
+        };
         let outcome = case::solve(&job, |total| Progress::claim(claim.cloned(), total)).and_then(|done| done.result);
         let record = Record {
             run: tasks.run.clone(),

@@ -20,7 +20,7 @@ use self::folder::Folder;
 use self::group::Group;
 use self::tasks::Tasks;
 use super::interrupt::Interrupt;
-use crate::composition::is_condensed;
+use crate::composition::{Form, form};
 use crate::error::{Error, Result};
 use crate::parallel::{agree, any, share_text};
 use crate::petsc::Session;
@@ -63,13 +63,7 @@ pub fn run(arguments: &SweepArguments) -> Result<()> {
     let interrupt = Interrupt::watch()?;
     let world = session.world();
     let outcome = solve((&session, &world), &interrupt, arguments);
-    if let Err(error @ Error::Internal(_)) = &outcome
-        && world.size() > 1
-    {
-        // The other ranks may wait for this one inside a library.
-        eprintln!("mpjr: rank {}: {error}", world.rank());
-        world.abort(error.exit_code());
-    }
+    super::abort_if_alone(&world, &outcome);
     outcome
 }
 
@@ -179,6 +173,6 @@ fn directory(arguments: &SweepArguments) -> PathBuf {
 
 /// Enough for the largest case. A condensed one has its unknowns on one rank.
 fn ranks_per_case(sweep: &Sweep) -> usize {
-    let scenes = sweep.cases.iter().map(|case| &case.scene).filter(|scene| !is_condensed(scene));
+    let scenes = sweep.cases.iter().map(|case| &case.scene).filter(|scene| form(scene) == Form::Monolithic);
     scenes.map(|scene| scene.unknowns().div_ceil(UNKNOWNS_PER_RANK)).max().unwrap_or(1)
 }

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use exmex::{Express, FlatEx};
 use toml::{Table, Value};
 
 use crate::error::{Error, Result};
+use crate::expression::{Dual, Expression};
 use crate::scene::keys::{Section, number};
 use crate::scene::{get, set};
 
@@ -13,7 +13,9 @@ use crate::scene::{get, set};
 pub(super) struct Follow {
     key: String,
     formula: String,
-    expression: FlatEx<f64>,
+    /// The dotted keys in it.
+    paths: Vec<String>,
+    expression: Expression,
 }
 
 /// The `[follow]` table, in its order; a key may follow from one before it, and none is `varied`.
@@ -31,10 +33,11 @@ pub(super) fn read(root: &Section, varied: &[&str]) -> Result<Vec<Follow>> {
         if varied.contains(&key.as_str()) {
             return Err(section.error(key, "is varied too; take it out of [vary] or of [follow]"));
         }
-        let expression = exmex::parse::<f64>(&braced(&formula)).map_err(|error| {
-            section.error(key, format!("is not a formula: {}", error.to_string().replace('\n', " ")))
-        })?;
-        Ok(Follow { key: key.clone(), formula, expression })
+        let paths = paths(&formula);
+        let names: Vec<&str> = paths.iter().map(String::as_str).collect();
+        let expression = Expression::parse(&formula, &names)
+            .map_err(|fault| section.error(key, format!("{formula:?} is not a formula of keys: {fault}")))?;
+        Ok(Follow { key: key.clone(), formula, paths, expression })
     };
     section.table().iter().map(follow).collect()
 }
@@ -48,40 +51,24 @@ impl Follow {
                 .and_then(number)
                 .ok_or_else(|| wrong(format!("{path} in {:?} is not a number of the scene", self.formula)))
         };
-        let values: Vec<f64> = self.expression.var_names().iter().map(value).collect::<Result<_>>()?;
-        match self.expression.eval(&values) {
-            Ok(result) if result.is_finite() => set(table, &self.key, Value::Float(result), sweep),
-            Ok(result) => Err(wrong(format!("{:?} gives {result}, which is not a finite number", self.formula))),
-            Err(error) => Err(wrong(format!("{:?} has no value: {error}", self.formula))),
+        let values: Vec<Dual> = self.paths.iter().map(|path| value(path).map(Dual::constant)).collect::<Result<_>>()?;
+        match self.expression.at(&values).value {
+            result if result.is_finite() => set(table, &self.key, Value::Float(result), sweep),
+            result => Err(wrong(format!("{:?} gives {result}, which is not a finite number", self.formula))),
         }
     }
 }
 
-/// The formula with every dotted key in braces, which makes it one variable: `2 * {phase.slide.velocity}`.
-fn braced(formula: &str) -> String {
-    let mut out = String::new();
-    let mut rest = formula;
-    while let Some(first) = rest.chars().next() {
-        let length = if first.is_alphabetic() || first == '_' { word(rest) } else { first.len_utf8() };
-        let (word, after) = rest.split_at(length);
-        if word.contains('.') && first != '.' {
-            out.extend(["{", word, "}"]);
-        } else {
-            out.push_str(word);
+/// The dotted keys in a formula, such as `phase.slide.velocity`, each once. A number with a point is not one.
+fn paths(formula: &str) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    for word in formula.split(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.'))) {
+        let is_key = word.starts_with(|c: char| c.is_alphabetic() || c == '_') && word.contains('.');
+        if is_key && !found.iter().any(|known| known == word) {
+            found.push(word.to_owned());
         }
-        rest = after;
     }
-    out
-}
-
-/// The bytes of the key at the beginning of the text; dots and quotes are part of it.
-fn word(text: &str) -> usize {
-    let mut quoted = false;
-    let ends = |c: char| {
-        quoted ^= c == '"';
-        !(quoted || c.is_alphanumeric() || ['_', '.', '"'].contains(&c))
-    };
-    text.find(ends).unwrap_or(text.len())
+    found
 }
 
 #[cfg(test)]
@@ -91,11 +78,11 @@ mod tests {
     #[test]
     fn dotted_keys_are_variables() {
         for (formula, expected) in [
-            ("0.01 * phase.slide.velocity", "0.01 * {phase.slide.velocity}"),
-            ("1e-3*sqrt(layer.width)/2.5", "1e-3*sqrt({layer.width})/2.5"),
-            ("phase.\"1.5 s\".velocity-phase.0.steps^2", "{phase.\"1.5 s\".velocity}-{phase.0.steps}^2"),
+            ("0.01 * phase.slide.velocity", &["phase.slide.velocity"][..]),
+            ("1e-3*sqrt(layer.width)/2.5 + layer.width", &["layer.width"]),
+            ("phase.0.steps^2-material.arms.0.time", &["phase.0.steps", "material.arms.0.time"]),
         ] {
-            assert_eq!(braced(formula), expected);
+            assert_eq!(paths(formula), expected);
         }
     }
 }
