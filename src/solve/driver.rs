@@ -22,7 +22,7 @@ pub struct Limits {
 impl Default for Limits {
     fn default() -> Self {
         // From stick to slip under a sharp regularisation a step takes up to a hundred.
-        Self { max_newton: 200, max_cuts: 8 }
+        Self { max_newton: 60, max_cuts: 8 }
     }
 }
 
