@@ -31,13 +31,6 @@ where
     String::from_utf8(bytes).map_err(|_| Error::Internal("a text was garbled on its way to another rank".into()))
 }
 
-/// Whether any rank says yes. Collective.
-pub fn any<C: Communicator + CommunicatorCollectives>(comm: &C, mine: bool) -> bool {
-    let mut somewhere = false;
-    comm.all_reduce_into(&mine, &mut somewhere, SystemOperation::logical_or());
-    somewhere
-}
-
 /// Gives every rank the numbers that `make` returns on rank 0, or its error. Collective.
 pub fn share_numbers<C>(comm: &C, make: impl FnOnce() -> Result<Vec<f64>>) -> Result<Vec<f64>>
 where
@@ -50,6 +43,13 @@ where
     numbers.resize(length, 0.0);
     comm.process_at_rank(0).broadcast_into(&mut numbers[..]);
     Ok(numbers)
+}
+
+/// Whether any rank says yes. Collective.
+pub fn any<C: Communicator + CommunicatorCollectives>(comm: &C, mine: bool) -> bool {
+    let mut somewhere = false;
+    comm.all_reduce_into(&mine, &mut somewhere, SystemOperation::logical_or());
+    somewhere
 }
 
 /// Gives every rank the bytes of rank `root`. Collective.
@@ -91,8 +91,8 @@ fn decode(bytes: &[u8]) -> Error {
         "usage" => Error::Usage(next()),
         "solver" => Error::Solver(next()),
         "domain" => Error::Domain(next()),
-        "stopped" => Error::Stopped(next()),
         "mismatch" => Error::Mismatch(next()),
+        "stopped" => Error::Stopped(next()),
         _ => Error::Internal(next()),
     }
 }

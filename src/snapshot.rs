@@ -97,11 +97,11 @@ impl NaturalOrder {
         Ok(Self { gather: Gather::new(layout, wanted)?, collected: wanted.len(), places })
     }
 
-    /// For vectors laid out like `layout`, all of which is on one rank in the order that it has there.
-    pub fn undivided(layout: &Vector) -> Result<Self> {
-        let entries: Vec<i32> = (0..layout.local_len() as i32).collect();
-        let places = (0..entries.len()).collect();
-        Ok(Self { gather: Gather::new(layout, &entries)?, collected: entries.len(), places })
+    /// For vectors that rank 0 holds whole, in their own order.
+    pub fn on_first_rank(layout: &Vector) -> Result<Self> {
+        let collected = layout.local_len();
+        let entries: Vec<i32> = (0..collected as i32).collect();
+        Ok(Self { gather: Gather::new(layout, &entries)?, collected, places: (0..collected).collect() })
     }
 
     /// Adds the vector to the snapshot. Collective.

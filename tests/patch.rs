@@ -22,14 +22,14 @@ const SHEAR: f64 = 600.0;
 const BULK: f64 = 2.0 * SHEAR * 1.3 / (3.0 * 0.4);
 const UNIAXIAL: f64 = BULK + 4.0 / 3.0 * SHEAR;
 
-/// Asserts the stress (xx, zz, yy, xz) at all nodes in the last frame, to 1e-9 of the largest.
-fn assert_stress(outcome: &Outcome, expected: [f64; 4]) {
+/// Asserts the stress (xx, zz, yy, xz) at all nodes in the last frame, to a tolerance relative to the largest.
+fn assert_stress(outcome: &Outcome, expected: [f64; 4], tolerance: f64) {
     let stress = outcome.results().bulk("stress").unwrap();
     let scale = expected.iter().fold(0.0f64, |most, s| most.max(s.abs()));
     assert!(stress.columns > 0);
     for node in stress.row(stress.rows - 1).chunks_exact(4) {
         for (found, exact) in node.iter().zip(expected) {
-            assert!((found - exact).abs() < 1e-9 * scale, "{node:?} against {expected:?}");
+            assert!((found - exact).abs() < tolerance * scale, "{node:?} against {expected:?}");
         }
     }
 }
@@ -65,14 +65,14 @@ fn uniform_compression() {
             assert_eq!(outcome.last("tangential_force"), 0.0);
             assert_eq!((outcome.last("contact_fraction"), outcome.last("stick_fraction")), (1.0, 0.0));
             assert!((outcome.last("max_penetration") / (pressure / penalty) - 1.0).abs() < 1e-9);
-            assert_stress(&outcome, [lateral, -pressure, lateral, 0.0]);
+            assert_stress(&outcome, [lateral, -pressure, lateral, 0.0], 1e-9);
             assert_displacement(&outcome, [0.0, -strain * DEPTH]);
         }
     }
 }
 
-/// The same with a relaxing material: the stress that the file tells is that of the accepted state of the arms. Rigid
-/// indenter; the exponential memory is exact on ramp and hold. With e = D/H and G * e from the oracle,
+/// The same with a relaxing material: the stress that the file tells is that of the accepted state of the arms. A penalty
+/// of 1e10 Pa/m is rigid but for 4e-7 of the approach; then the exponential memory is exact on ramp and hold. With e = D/H and G * e from the oracle,
 /// sigma_zz = -(K e + 4/3 G * e), sigma_xx = -(K e - 2/3 G * e), where K relaxes like G or not at all.
 #[test]
 fn uniform_relaxation() {
@@ -83,12 +83,12 @@ fn uniform_relaxation() {
         let outcome = Run::new(UNIFORM)
             .set("material.arms=[{ weight = 0.4, time = 0.3 }, { weight = 0.35, time = 1.1 }]")
             .set(format!("material.poisson_rule=\"{rule}\""))
-            .set("contact.penalty=1e14")
+            .set("contact.penalty=1e10")
             .set("output.bulk_at=[\"hold\"]")
             .done();
         let deviatoric = relaxed(SHEAR);
         let lateral = -(volumetric - 2.0 / 3.0 * deviatoric);
-        assert_stress(&outcome, [lateral, -(volumetric + 4.0 / 3.0 * deviatoric), lateral, 0.0]);
+        assert_stress(&outcome, [lateral, -(volumetric + 4.0 / 3.0 * deviatoric), lateral, 0.0], 1e-6);
     }
 }
 
@@ -114,7 +114,7 @@ fn uniform_shear() {
             assert!((outcome.last("normal_force") / (pressure * WIDTH) - 1.0).abs() < 1e-9);
             assert!((outcome.last("tangential_force") / (sign * shear * WIDTH) - 1.0).abs() < 1e-9);
             assert_eq!(outcome.last("stick_fraction"), 0.0);
-            assert_stress(&outcome, [lateral, -pressure, lateral, sign * shear]);
+            assert_stress(&outcome, [lateral, -pressure, lateral, sign * shear], 1e-9);
             assert_displacement(&outcome, [sign * shear * DEPTH / SHEAR, -pressure / UNIAXIAL * DEPTH]);
         }
     }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use common::compare::{assert_same, ends_with, mpjr, mpjr_on, output_of};
+use common::program::{assert_same, ends_with, output_of, program};
 use mpjr::output::{checkpoint, reader::Results};
 
 /// Two phases, of which `slide` has `steps`; `material` and `solver` are the rest of their tables.
@@ -97,14 +97,14 @@ fn nothing_is_lost_by_twenty_kills() {
         let directory = tempfile::tempdir().unwrap();
         let scene = scene(directory.path(), 300, &material, solver);
         let (whole, killed) = (directory.path().join("whole.h5"), directory.path().join("killed.h5"));
-        output_of(&mut run(&mut mpjr(), &scene, &whole));
+        output_of(&mut run(&mut program(1), &scene, &whole));
         let mut rows_before = 0;
         for kill in 0..20_u64 {
-            let mut program = run(&mut mpjr(), &scene, &killed);
+            let mut command = run(&mut program(1), &scene, &killed);
             if checkpoint::read(&killed).unwrap().is_some() {
-                program.arg("--resume");
+                command.arg("--resume");
             }
-            let mut child = program.stdout(Stdio::null()).spawn().unwrap();
+            let mut child = command.stdout(Stdio::null()).spawn().unwrap();
             let random = kill.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407) >> 40;
             wait_for(&mut child, &killed, (random % 5) as usize);
             std::thread::sleep(Duration::from_micros(random % 20_011));
@@ -123,7 +123,7 @@ fn nothing_is_lost_by_twenty_kills() {
             rows_before = rows;
         }
         assert!(rows_before > 20);
-        output_of(run(&mut mpjr(), &scene, &killed).arg("--resume"));
+        output_of(run(&mut program(1), &scene, &killed).arg("--resume"));
         assert_same(&whole, &killed, 0.0);
         assert!(!checkpoint::beside(&killed).exists());
         assert_eq!(Results::open(&killed).unwrap().text("status").unwrap(), "complete");
@@ -143,11 +143,11 @@ fn a_signal_to_one_rank_stops_all() {
     {
         let scene = scene(directory.path(), 40, &material, solver);
         let (whole, stopped) = (directory.path().join("whole.h5"), directory.path().join("stopped.h5"));
-        output_of(run(&mut mpjr(), &scene, &whole).args(["--set", "output.bulk_at=[]"]));
+        output_of(run(&mut program(1), &scene, &whole).args(["--set", "output.bulk_at=[]"]));
         for (signal, ranks) in [("TERM", 2), ("INT", 1)] {
-            let mut program = run(&mut mpjr_on(2), &scene, &stopped);
-            program.args(["--set", "output.bulk_at=[]"]);
-            let mut child = program.stdout(Stdio::null()).spawn().unwrap();
+            let mut command = run(&mut program(2), &scene, &stopped);
+            command.args(["--set", "output.bulk_at=[]"]);
+            let mut child = command.stdout(Stdio::null()).spawn().unwrap();
             wait_for(&mut child, &stopped, 4);
             let rank = processes_of(&child).pop().unwrap();
             assert!(Command::new("kill").args([&format!("-{signal}"), &rank]).status().unwrap().success());
@@ -156,7 +156,7 @@ fn a_signal_to_one_rank_stops_all() {
             assert_eq!(results.text("status").unwrap(), "stopped");
             assert!(results.history("time").unwrap().len() < 60);
             drop(results);
-            output_of(run(&mut mpjr_on(ranks), &scene, &stopped).args(["--resume", "--set", "output.bulk_at=[]"]));
+            output_of(run(&mut program(ranks), &scene, &stopped).args(["--resume", "--set", "output.bulk_at=[]"]));
             assert_same(&whole, &stopped, within);
         }
     }
@@ -195,14 +195,14 @@ fn what_cannot_be_resumed_is_refused() {
     let scene = scene(directory.path(), 2000, &ratio(), "");
     let out = directory.path().join("run.h5");
     let resume = |set: &[&str]| {
-        let mut command = run(&mut mpjr(), &scene, &out);
+        let mut command = run(&mut program(1), &scene, &out);
         command.arg("--resume").args(set.iter().flat_map(|set| ["--set", set]));
         command
     };
     let message = ends_with(&mut resume(&[]), 2);
     assert_eq!(message, format!("mpjr: {}: there is nothing to resume; run without --resume\n", out.display()));
 
-    let mut child = run(&mut mpjr(), &scene, &out).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut child = run(&mut program(1), &scene, &out).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     wait_for(&mut child, &out, 2);
     assert!(Command::new("kill").arg(child.id().to_string()).status().unwrap().success());
     let output = child.wait_with_output().unwrap();
@@ -226,7 +226,7 @@ fn what_cannot_be_resumed_is_refused() {
     assert!(message.contains("layer.depth: 0.5 there, 0.25 here"), "{message}");
 
     // A damaged checkpoint, and one whose results are gone.
-    let mut child = run(&mut mpjr(), &scene, &out).stdout(Stdio::null()).spawn().unwrap();
+    let mut child = run(&mut program(1), &scene, &out).stdout(Stdio::null()).spawn().unwrap();
     wait_for(&mut child, &out, 2);
     child.kill().unwrap();
     child.wait().unwrap();
@@ -250,7 +250,7 @@ fn a_full_disk_leaves_the_last_good_state() {
     let disk = directory.path().join("disk");
     std::fs::create_dir(&disk).unwrap();
     let (whole, short) = (directory.path().join("whole.h5"), directory.path().join("short.h5"));
-    output_of(&mut run(&mut mpjr(), &scene, &whole));
+    output_of(&mut run(&mut program(1), &scene, &whole));
     // The interface profiles alone are larger.
     let size = std::fs::metadata(&whole).unwrap().len() / 2;
     let script = "mount -t tmpfs -o size=$1 tmpfs \"$0\" && { \"$2\" run \"$3\" --out \"$0/short.h5\"; code=$?; } && \
@@ -260,6 +260,6 @@ fn a_full_disk_leaves_the_last_good_state() {
     let message = ends_with(&mut inside, 4);
     assert!(message.contains("No space left"), "{message}");
     assert_eq!(Results::open(&short).unwrap().text("status").unwrap(), "stopped");
-    output_of(run(&mut mpjr(), &scene, &short).arg("--resume"));
+    output_of(run(&mut program(1), &scene, &short).arg("--resume"));
     assert_same(&whole, &short, 0.0);
 }

@@ -31,7 +31,7 @@ pub struct Job<'a> {
     pub interrupt: &'a Interrupt,
     /// The scene.
     pub scene: &'a Scene,
-    /// Where it was read from: the files that it names are beside it.
+    /// The file that it was read from: others are looked for beside it.
     pub file: &'a Path,
     /// The result file.
     pub out: &'a Path,

@@ -195,7 +195,13 @@ impl Reader<'_> {
 
     fn named(&mut self) -> Result<Node, Fault> {
         let start = self.at;
-        while self.letters.get(self.at).is_some_and(|letter| letter.is_alphanumeric() || matches!(letter, '_' | '.')) {
+        // What stands in double quotes is part of a name.
+        let mut quoted = false;
+        while let Some(&letter) = self.letters.get(self.at) {
+            quoted ^= letter == '"';
+            if !(quoted || letter.is_alphanumeric() || matches!(letter, '_' | '.' | '"')) {
+                break;
+            }
             self.at += 1;
         }
         let name: String = self.letters[start..self.at].iter().collect();

@@ -190,8 +190,8 @@ impl Integrator {
         u: &mut Vector,
         (now, dt): (f64, f64),
     ) -> Result<()> {
-        let step = Step { t: now + dt, dt };
-        let mut context = Context { problem, ts: self.ts, step, newton: 0, cuts: 0, error: None };
+        let mut context =
+            Context { problem, ts: self.ts, step: Step { t: now + dt, dt }, newton: 0, cuts: 0, error: None };
         let pointer = (&raw mut context).cast::<c_void>();
         let (ts, mut snes, mut reason) = (self.ts, null_mut(), 0);
         // SAFETY: `context` outlives TSSolve, the only call that runs the callbacks; PETSc gives each callback the

@@ -38,7 +38,7 @@ pub enum Rms {
 /// bits as a fraction of 1. As the amplitudes are not random, the root mean square sqrt(sum a_n^2 / 2), or that with
 /// q_n a_n for the slope, is exactly what is asked for. A wave keeps its phase when `shortest` or `longest` change.
 ///
-/// h_0 makes the lowest point 0: the lowest of [`GRID`] points to the shortest wavelength, from x = 0 on, and of what
+/// h_0 makes the lowest point 0: the lowest of eight points to the shortest wavelength, from x = 0 on, and of what
 /// a parabola through that point and its neighbours dips below them.
 ///
 /// Sine, cosine and power are those of the `libm` crate, plain arithmetic in a fixed order, not of the system's

@@ -19,7 +19,12 @@ pub(super) fn apply(table: &mut Table, overrides: &[String], file: &Path) -> Res
 
 /// Whether an override is of a material as a whole or of its file, and so decides what other keys there are.
 pub(super) fn names_material(typed: &str) -> bool {
-    let keys = split(typed).map_or_else(|_| Vec::new(), |(path, _)| split_path(path));
+    split(typed).is_ok_and(|(path, _)| is_of_material(path))
+}
+
+/// Whether the path is that of a material as a whole or of its file.
+pub(super) fn is_of_material(path: &str) -> bool {
+    let keys = split_path(path);
     match keys.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
         ["material"] | ["material", "file"] | ["material", _, "file"] => true,
         ["material", index] => index.parse::<usize>().is_ok(),

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::keys::{self, Section};
-use super::{Scene, from_table, get, include, parse, set};
+use super::{Scene, from_table, get, include, open, overrides, parse, set};
 use crate::error::{Error, Result};
 
 /// More cases than this are a mistake.
@@ -16,7 +16,7 @@ const MOST_CASES: usize = 100_000;
 /// A sweep with its cases, in order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sweep {
-    /// The scene file.
+    /// The file of the scene.
     pub file: PathBuf,
     /// The varied keys, slowest first.
     pub keys: Vec<String>,
@@ -57,8 +57,8 @@ pub fn read(text: &str, file: &Path) -> Result<String> {
         Some(other) => return Err(root.must_be("scene", "the name of a scene file", other)),
         None => return Err(root.missing("scene", "the name of a scene file")),
     };
-    let base = open(&scene_file).map_err(|reason| root.error("scene", reason))?;
-    let mut base = parse(&base, &scene_file)?;
+    let base = open(&scene_file).map_err(|error| root.error("scene", error.to_string().replacen(": ", " ", 1)))?;
+    let base = parse(&base, &scene_file)?;
     // A scene that is wrong by itself says so in its own name, unless what is wrong is varied.
     let vary = vary(&root)?;
     // Its keys can vary only once the material is there.
@@ -76,14 +76,21 @@ pub fn read(text: &str, file: &Path) -> Result<String> {
     for index in 0..count {
         let chosen = combination(&vary, index);
         let mut table = base.clone();
-        for (key, value) in &chosen {
-            let value = whole_table(&table, key, value, file)?;
-            set(&mut table, key, value, file)?;
-        }
-        include(&mut table, &scene_file, &super::open)?;
-        follow.iter().try_for_each(|follow| follow.apply(&mut table, file))?;
         let values: Vec<String> = chosen.iter().map(|(_, value)| shown(value)).collect();
         let label = label(&keys, &values);
+        // What names the file of a material acts before it is read, all else after, on what it says.
+        let (materials, others): (Vec<_>, Vec<_>) =
+            chosen.into_iter().partition(|(key, _)| overrides::is_of_material(key));
+        let put = |table: &mut Table, chosen: &[(&str, &Value)]| {
+            chosen.iter().try_for_each(|(key, value)| {
+                let value = whole_table(table, key, value, file)?;
+                set(table, key, value, file)
+            })
+        };
+        put(&mut table, &materials)?;
+        include(&mut table, &scene_file, &open).map_err(|error| blame(error, file, &label))?;
+        put(&mut table, &others)?;
+        follow.iter().try_for_each(|follow| follow.apply(&mut table, file))?;
         let scene = from_table(&table, &scene_file).map_err(|error| blame(error, file, &label))?;
         let mut scene_table = table;
         if !keys.iter().any(|key| key == "title") {
@@ -114,7 +121,8 @@ pub fn receive(text: &str) -> Result<Sweep> {
         Ok(Case { values: texts(case.get("values")).ok_or_else(garbled)?, scene: from_table(scene, &file)? })
     });
     let cases = cases.collect::<Result<_>>()?;
-    Ok(Sweep { file: file.clone(), keys: texts(table.get("keys")).ok_or_else(garbled)?, cases })
+    let keys = texts(table.get("keys")).ok_or_else(garbled)?;
+    Ok(Sweep { file, keys, cases })
 }
 
 /// The varied keys with their values.
@@ -160,12 +168,15 @@ fn whole_table(scene: &Table, key: &str, value: &Value, sweep: &Path) -> Result<
         _ => None,
     });
     let Some(name) = name.filter(|name| name.ends_with(".toml")) else { return Ok(value.clone()) };
-    if get(scene, key).is_some_and(|present| !present.is_table()) {
+    // The file of a table is for the scene to read.
+    if key.ends_with(".file") || get(scene, key).is_some_and(|present| !present.is_table()) {
         return Ok(value.clone());
     }
     let wrong = |reason: String| Error::scene(sweep, format!("vary.{key:?}"), reason);
     let file = beside(sweep, name);
-    let table = parse(&open(&file).map_err(wrong)?, &file)?;
+    let text = open(&file).map_err(|error| wrong(error.to_string().replacen(": ", " ", 1)))?;
+    let mut table = parse(&text, &file)?;
+    include(&mut table, &file, &open)?;
     match get(&table, key) {
         Some(found @ Value::Table(_)) => Ok(found.clone()),
         _ => Err(wrong(format!("{} has no [{key}] table", file.display()))),
@@ -182,10 +193,6 @@ fn blame(error: Error, sweep: &Path, label: &str) -> Error {
 
 fn beside(file: &Path, name: &str) -> PathBuf {
     file.parent().unwrap_or(Path::new("")).join(name)
-}
-
-fn open(file: &Path) -> std::result::Result<String, String> {
-    std::fs::read_to_string(file).map_err(|error| format!("{} cannot be read: {error}", file.display()))
 }
 
 /// A varied value as text: bare where it is a text.

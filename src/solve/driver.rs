@@ -132,7 +132,7 @@ impl<'a> Driver<'a> {
         let start = (self.now, self.dt.unwrap_or(target.dt));
         self.problem.begin(phase.clone());
         self.max_cuts = settings.max_cuts;
-        let settings = Settings { max_cuts: self.allowed_cuts(), ..settings };
+        let settings = Settings { max_cuts: self.cuts_left(), ..settings };
         let begun = Instant::now();
         let outcome = Integrator::new(comm, settings)?.solve(self, tangent, u, start);
         self.counts.total = begun.elapsed();
@@ -147,13 +147,21 @@ impl<'a> Driver<'a> {
         self.counts
     }
 
+    /// How often the next step may be cut.
+    fn cuts_left(&self) -> usize {
+        match self.cuts {
+            0 => self.max_cuts,
+            cuts => self.max_cuts.min(MOST_CUTS.saturating_sub(cuts)),
+        }
+    }
+
     /// The step after one that ended at `now` and was `dt` long.
     fn next(&mut self, dt: f64) -> Next {
         let target = self.phases[self.phase].steps[self.target];
         let remaining = target.time - self.now;
         if remaining > 1e-9 * target.dt {
             // Inside a planned step that was cut: grow back by two.
-            return Next::Step { now: self.now, dt: remaining.min(2.0 * dt), max_cuts: self.allowed_cuts() };
+            return Next::Step { now: self.now, dt: remaining.min(2.0 * dt), max_cuts: self.cuts_left() };
         }
         self.cuts = 0;
         self.now = target.time;
@@ -166,13 +174,7 @@ impl<'a> Driver<'a> {
                 None => return Next::Stop,
             }
         }
-        let dt = self.phases[self.phase].steps[self.target].dt;
-        Next::Step { now: self.now, dt, max_cuts: self.allowed_cuts() }
-    }
-
-    /// How often the next step may be cut.
-    fn allowed_cuts(&self) -> usize {
-        self.max_cuts.min(MOST_CUTS.saturating_sub(self.cuts))
+        Next::Step { now: self.now, dt: self.phases[self.phase].steps[self.target].dt, max_cuts: self.cuts_left() }
     }
 }
 

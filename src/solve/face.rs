@@ -169,6 +169,14 @@ impl ContactFace {
         Ok(())
     }
 
+    /// Makes `residual` hold at the accepted state.
+    pub fn accepted_residual(&mut self) -> Result<()> {
+        let State { surface, placement, .. } = &self.accepted;
+        self.interface.residual(*placement, surface, &mut self.residual)?;
+        self.mask_residual();
+        Ok(())
+    }
+
     /// Adds the accepted state to a snapshot; the displacements are part of the solution.
     pub fn save(&self, snapshot: &mut Snapshot) {
         let State { surface, placement: Placement { approach, sliding, sliding_rate }, scale } = &self.accepted;
@@ -183,14 +191,6 @@ impl ContactFace {
         self.accepted.scale = scale;
         snapshot.fill("face-rate", &mut self.accepted.surface.rate)?;
         self.gather.gather(u, &mut self.accepted.surface.displacement)
-    }
-
-    /// Makes `residual` hold at the accepted state.
-    pub fn accepted_residual(&mut self) -> Result<()> {
-        let State { surface, placement, .. } = &self.accepted;
-        self.interface.residual(*placement, surface, &mut self.residual)?;
-        self.mask_residual();
-        Ok(())
     }
 
     /// The contact at the accepted state.

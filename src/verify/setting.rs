@@ -145,11 +145,11 @@ impl Setting {
         );
         // Writing to a string cannot fail.
         if let Some([coefficient, regularisation]) = self.friction {
-            let _ = write!(text, "[friction]\nlaw = \"coulomb_tanh\"\ncoefficient = {coefficient:?}\n");
+            let _ = writeln!(text, "[friction]\nlaw = \"coulomb_tanh\"\ncoefficient = {coefficient:?}");
             let _ = writeln!(text, "regularisation = {regularisation:?}");
         }
         for Phase { duration, steps, approach, velocity } in &self.phases {
-            let _ = write!(text, "[[phase]]\nduration = {duration:?}\nsteps = {steps}\napproach = {approach:?}\n");
+            let _ = writeln!(text, "[[phase]]\nduration = {duration:?}\nsteps = {steps}\napproach = {approach:?}");
             let _ = writeln!(text, "velocity = {velocity:?}");
         }
         text

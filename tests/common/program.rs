@@ -1,6 +1,6 @@
 //! Runs the real program on a scene, in a directory of its own.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use mpjr::output::reader::Results;
@@ -146,13 +146,15 @@ impl Outcome {
     }
 }
 
-/// The program on `ranks`, without a launcher on one.
+/// The program on `ranks`; on one without a launcher, and without what MPI does to find other processes.
 pub fn program(ranks: usize) -> Command {
     if ranks == 1 {
-        return Command::new(MPJR);
+        let mut command = Command::new(MPJR);
+        command.envs([("OMPI_MCA_ess_singleton_isolated", "1"), ("OMPI_MCA_btl", "self"), ("OMP_NUM_THREADS", "1")]);
+        return command;
     }
     let mut command = mpirun(ranks);
-    command.arg(MPJR);
+    command.env("OMP_NUM_THREADS", "1").arg(MPJR);
     command
 }
 
@@ -164,9 +166,66 @@ pub fn mpjr(ranks: usize, arguments: &[&str]) -> Outcome {
 }
 
 /// The names in a directory.
-pub fn names(directory: &std::path::Path) -> Vec<String> {
+pub fn names(directory: &Path) -> Vec<String> {
     let mut names: Vec<String> =
         std::fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
+}
+
+/// What the command wrote to standard error, after checking its exit code.
+pub fn ends_with(command: &mut Command, code: i32) -> String {
+    let output = command.output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{command:?}\n{}{text}", String::from_utf8_lossy(&output.stdout));
+    text
+}
+
+/// Standard output, after checking that all went well.
+pub fn output_of(command: &mut Command) -> String {
+    let output: Output = command.output().unwrap();
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{command:?}\n{text}{}", String::from_utf8_lossy(&output.stderr));
+    text
+}
+
+/// Every number of a result file: history, interface and bulk, with a name for messages.
+pub fn numbers(path: &Path) -> Vec<(String, Vec<f64>)> {
+    let results = Results::open(path).unwrap();
+    let file = hdf5::File::open(path).unwrap();
+    let mut all = Vec::new();
+    for column in file.group("history").unwrap().member_names().unwrap() {
+        if column != "energy" {
+            all.push((column.clone(), results.history(&column).unwrap()));
+        }
+    }
+    if results.has("history/energy/stored") {
+        for column in file.group("history/energy").unwrap().member_names().unwrap() {
+            all.push((column.clone(), results.history(&format!("energy/{column}")).unwrap()));
+        }
+    }
+    for group in ["interface", "bulk"] {
+        for field in file.group(group).map(|group| group.member_names().unwrap()).unwrap_or_default() {
+            let values = if group == "bulk" { results.bulk(&field) } else { results.interface(&field) };
+            all.push((format!("{group}/{field}"), values.unwrap().values));
+        }
+    }
+    all
+}
+
+/// Both files have the same numbers: bit for bit, or (`within` > 0) to so much of the largest of each list.
+pub fn assert_same(one: &Path, other: &Path, within: f64) {
+    let (one, other) = (numbers(one), numbers(other));
+    assert_eq!(one.len(), other.len());
+    for ((name, one), (_, other)) in one.iter().zip(&other) {
+        assert_eq!(one.len(), other.len(), "{name}");
+        if within == 0.0 {
+            let differing = one.iter().zip(other).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+            assert_eq!(differing, 0, "{name}: numbers that differ");
+        } else if name != "newton_iterations" {
+            let largest = one.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+            let difference = one.iter().zip(other).fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs()));
+            assert!(difference <= within * largest, "{name}: {difference:e} of {largest:e}");
+        }
+    }
 }

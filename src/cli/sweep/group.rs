@@ -146,16 +146,8 @@ impl Group {
             Some(shared) => Origin::Shared { results: &shared.results, phases: shared.phases },
             None => Origin::Rest,
         };
-        let job = Job {
-            session,
-            comm: &self.comm,
-            interrupt,
-            scene,
-            file: &tasks.sweep.file,
-            out: &out,
-            origin,
-            keep_state: false,
-        };
+        let file = &tasks.sweep.file;
+        let job = Job { session, comm: &self.comm, interrupt, scene, file, out: &out, origin, keep_state: false };
         let outcome = case::solve(&job, |total| Progress::claim(claim.cloned(), total)).and_then(|done| done.result);
         let record = Record {
             run: tasks.run.clone(),

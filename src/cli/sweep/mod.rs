@@ -24,6 +24,7 @@ use crate::composition::{Form, form};
 use crate::error::{Error, Result};
 use crate::parallel::{agree, any, share_text};
 use crate::petsc::Session;
+use crate::scene;
 use crate::scene::sweep::{self, Sweep};
 
 /// With all unknowns in one system, one rank for so many of them.
@@ -161,8 +162,7 @@ fn tell((sweep, folder): (&Sweep, &Folder), chosen: &[usize], begun: Instant, st
 }
 
 fn read(file: &Path) -> Result<String> {
-    let text = std::fs::read_to_string(file).map_err(|error| Error::file(file, format!("cannot be read: {error}")))?;
-    sweep::read(&text, file)
+    sweep::read(&scene::open(file)?, file)
 }
 
 /// The sweep's stem in the current directory, unless named.

@@ -13,8 +13,8 @@ use crate::scene::{get, set};
 pub(super) struct Follow {
     key: String,
     formula: String,
-    /// The dotted keys in it.
-    paths: Vec<String>,
+    /// The keys in it.
+    others: Vec<String>,
     expression: Expression,
 }
 
@@ -33,11 +33,11 @@ pub(super) fn read(root: &Section, varied: &[&str]) -> Result<Vec<Follow>> {
         if varied.contains(&key.as_str()) {
             return Err(section.error(key, "is varied too; take it out of [vary] or of [follow]"));
         }
-        let paths = paths(&formula);
-        let names: Vec<&str> = paths.iter().map(String::as_str).collect();
+        let others = paths(&formula);
+        let names: Vec<&str> = others.iter().map(String::as_str).collect();
         let expression = Expression::parse(&formula, &names)
-            .map_err(|fault| section.error(key, format!("{formula:?} is not a formula of keys: {fault}")))?;
-        Ok(Follow { key: key.clone(), formula, paths, expression })
+            .map_err(|fault| section.error(key, format!("is not a formula: {formula:?}, {fault}")))?;
+        Ok(Follow { key: key.clone(), formula, others, expression })
     };
     section.table().iter().map(follow).collect()
 }
@@ -51,24 +51,38 @@ impl Follow {
                 .and_then(number)
                 .ok_or_else(|| wrong(format!("{path} in {:?} is not a number of the scene", self.formula)))
         };
-        let values: Vec<Dual> = self.paths.iter().map(|path| value(path).map(Dual::constant)).collect::<Result<_>>()?;
-        match self.expression.at(&values).value {
-            result if result.is_finite() => set(table, &self.key, Value::Float(result), sweep),
-            result => Err(wrong(format!("{:?} gives {result}, which is not a finite number", self.formula))),
+        let values: Vec<Dual> =
+            self.others.iter().map(|path| value(path).map(Dual::constant)).collect::<Result<_>>()?;
+        let result = self.expression.at(&values).value;
+        if result.is_finite() {
+            return set(table, &self.key, Value::Float(result), sweep);
         }
+        Err(wrong(format!("{:?} gives {result}, which is not a finite number", self.formula)))
     }
 }
 
-/// The dotted keys in a formula, such as `phase.slide.velocity`, each once. A number with a point is not one.
+/// The dotted keys in a formula, each once.
 fn paths(formula: &str) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
-    for word in formula.split(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.'))) {
-        let is_key = word.starts_with(|c: char| c.is_alphabetic() || c == '_') && word.contains('.');
-        if is_key && !found.iter().any(|known| known == word) {
+    let mut rest = formula;
+    while let Some(first) = rest.chars().next() {
+        let length = if first.is_alphabetic() || first == '_' { word(rest) } else { first.len_utf8() };
+        let (word, after) = rest.split_at(length);
+        if word.contains('.') && first != '.' && !found.iter().any(|known| known == word) {
             found.push(word.to_owned());
         }
     }
     found
+}
+
+/// The bytes of the key at the beginning of the text; dots and quotes are part of it.
+fn word(text: &str) -> usize {
+    let mut quoted = false;
+    let ends = |c: char| {
+        quoted ^= c == '"';
+        !(quoted || c.is_alphanumeric() || ['_', '.', '"'].contains(&c))
+    };
+    text.find(ends).unwrap_or(text.len())
 }
 
 #[cfg(test)]
@@ -79,10 +93,11 @@ mod tests {
     fn dotted_keys_are_variables() {
         for (formula, expected) in [
             ("0.01 * phase.slide.velocity", &["phase.slide.velocity"][..]),
-            ("1e-3*sqrt(layer.width)/2.5 + layer.width", &["layer.width"]),
-            ("phase.0.steps^2-material.arms.0.time", &["phase.0.steps", "material.arms.0.time"]),
+            ("1e-3*sqrt(layer.width)/2.5 + 1.e-3 + layer.width", &["layer.width"]),
+            ("phase.\"1.5 s\".velocity-phase.0.steps^2", &["phase.\"1.5 s\".velocity", "phase.0.steps"]),
         ] {
             assert_eq!(paths(formula), expected);
+            assert!(Expression::parse(formula, expected).is_ok(), "{formula}");
         }
     }
 }

@@ -66,18 +66,20 @@ impl Backing for Following {
         self.softness
     }
 
+    fn takes_forces(&self) -> bool {
+        false
+    }
+
     fn commit(&mut self, step: Step, u: &Vector, _residual: &Residual) -> Result<()> {
         self.relaxation.as_mut().map_or(Ok(()), |relaxation| relaxation.arms.commit(step, u))
     }
 
-    fn save(&mut self, snapshot: &mut Snapshot) -> Result<()> {
-        let Some(Relaxation { arms, .. }) = &self.relaxation else { return Ok(()) };
-        arms.save(&mut NaturalOrder::undivided(arms.layout())?, snapshot)
+    fn save(&mut self, order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()> {
+        self.relaxation.as_ref().map_or(Ok(()), |relaxation| relaxation.arms.save(order, snapshot))
     }
 
-    fn restore(&mut self, snapshot: &Snapshot, u: &Vector) -> Result<()> {
-        let order = NaturalOrder::undivided(u)?;
-        self.relaxation.as_mut().map_or(Ok(()), |relaxation| relaxation.arms.restore(&order, snapshot, u))
+    fn restore(&mut self, order: &NaturalOrder, snapshot: &Snapshot, u: &Vector) -> Result<()> {
+        self.relaxation.as_mut().map_or(Ok(()), |relaxation| relaxation.arms.restore(order, snapshot, u))
     }
 
     fn bulk_fields(&mut self, face: &mut ContactFace, u: &Vector) -> Result<BulkFields> {

@@ -105,8 +105,10 @@ impl Backing for Remembering {
 
     fn free(&mut self, _step: Step, u: &Vector, _rate: &Vector, y: &mut Vector) -> Result<()> {
         y.copy_from(u)?;
+        // On all ranks: PETSc keeps norms until it sees a vector written to, on each rank for itself.
+        let mut y = y.view_mut()?;
         if let Some(interior) = &self.interior {
-            for (y, free) in y.view_mut()?.iter_mut().zip(&interior.face) {
+            for (y, free) in y.iter_mut().zip(&interior.face) {
                 *y -= free;
             }
         }
@@ -125,18 +127,22 @@ impl Backing for Remembering {
         self.softness
     }
 
+    fn takes_forces(&self) -> bool {
+        true
+    }
+
     fn commit(&mut self, step: Step, _u: &Vector, residual: &Residual) -> Result<()> {
         let mine = self.interior.as_mut().map_or(Ok(()), |interior| interior.commit(step, residual));
         self.prepared = None;
         agree(&self.comm, mine)
     }
 
-    fn save(&mut self, snapshot: &mut Snapshot) -> Result<()> {
+    fn save(&mut self, _order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()> {
         let mine = self.interior.as_ref().map_or(Ok(()), |interior| interior.save(snapshot));
         agree(&self.comm, mine)
     }
 
-    fn restore(&mut self, snapshot: &Snapshot, _u: &Vector) -> Result<()> {
+    fn restore(&mut self, _order: &NaturalOrder, snapshot: &Snapshot, _u: &Vector) -> Result<()> {
         self.prepared = None;
         let mine = self.interior.as_mut().map_or(Ok(()), |interior| interior.restore(snapshot));
         agree(&self.comm, mine)
@@ -231,14 +237,14 @@ impl Interior {
     }
 
     fn save(&self, snapshot: &mut Snapshot) -> Result<()> {
-        let mut order = NaturalOrder::undivided(&self.u)?;
-        order.save("interior", &self.u, snapshot)?;
+        let mut order = self.body.natural_order(&self.u)?;
+        order.save("body", &self.u, snapshot)?;
         self.bulk.save(&mut order, snapshot)
     }
 
     fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
-        let order = NaturalOrder::undivided(&self.u)?;
-        order.restore("interior", &mut self.u, snapshot)?;
+        let order = self.body.natural_order(&self.u)?;
+        order.restore("body", &mut self.u, snapshot)?;
         self.bulk.restore(&order, snapshot, &self.u)
     }
 
