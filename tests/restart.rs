@@ -170,13 +170,13 @@ fn factors_that_serve_for_later_steps_come_back() {
         let scene = scene(directory.path(), 40, &material, "");
         let (whole, killed) = (directory.path().join("whole.h5"), directory.path().join("killed.h5"));
         let cells = ["--set", "layer.cells=[640, 3]"];
-        output_of(run(&mut mpjr(), &scene, &whole).args(cells));
-        let mut child = run(&mut mpjr(), &scene, &killed).args(cells).stdout(Stdio::null()).spawn().unwrap();
+        output_of(run(&mut program(1), &scene, &whole).args(cells));
+        let mut child = run(&mut program(1), &scene, &killed).args(cells).stdout(Stdio::null()).spawn().unwrap();
         wait_for(&mut child, &killed, 8);
         child.kill().unwrap();
         child.wait().unwrap();
         assert!(checkpoint::read(&killed).unwrap().unwrap().fields.iter().any(|(name, _)| name == "factor"));
-        output_of(run(&mut mpjr(), &scene, &killed).args(cells).arg("--resume"));
+        output_of(run(&mut program(1), &scene, &killed).args(cells).arg("--resume"));
         assert_same(&whole, &killed, 0.0);
     }
 }

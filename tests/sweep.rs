@@ -1,6 +1,7 @@
 //! Sweeps: which cases there are, that none is run twice or lost, and that shared phases change nothing.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[allow(dead_code)]
 mod common;
 
 use std::path::{Path, PathBuf};

@@ -115,11 +115,6 @@ impl Arms {
         Ok(())
     }
 
-    /// A vector of the layout that all of them have.
-    pub fn layout(&self) -> &Vector {
-        &self.previous
-    }
-
     /// Adds the elongations to a snapshot.
     pub fn save(&self, order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()> {
         let mut arms = self.elongations.iter().enumerate();

@@ -61,10 +61,6 @@ pub fn read(text: &str, file: &Path) -> Result<String> {
     let base = parse(&base, &scene_file)?;
     // A scene that is wrong by itself says so in its own name, unless what is wrong is varied.
     let vary = vary(&root)?;
-    // Its keys can vary only once the material is there.
-    if !vary.iter().any(|(key, _)| key.starts_with("material") && key.ends_with("file")) {
-        include(&mut base, &scene_file, &super::open)?;
-    }
     let follow = follow::read(&root, &vary.iter().map(|(key, _)| key.as_str()).collect::<Vec<_>>())?;
 
     let count = vary.iter().try_fold(1_usize, |count, (_, values)| count.checked_mul(values.len()));

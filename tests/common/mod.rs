@@ -1,6 +1,5 @@
 //! Shared by the integration tests; each uses a part of it.
 #![allow(dead_code)]
-pub mod compare;
 pub mod mpi;
 pub mod program;
 pub mod sample;

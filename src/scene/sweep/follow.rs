@@ -71,6 +71,7 @@ fn paths(formula: &str) -> Vec<String> {
         if word.contains('.') && first != '.' && !found.iter().any(|known| known == word) {
             found.push(word.to_owned());
         }
+        rest = after;
     }
     found
 }

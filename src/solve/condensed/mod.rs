@@ -148,7 +148,7 @@ impl<B: Backing> TransientProblem for Condensed<B> {
         // What is below round-off beside c 1.
         let negligible = 1e-17 * secant / self.backing.softness();
         self.columns = SparseColumns::new(&self.face.tangent, &self.face.interface().face().edges, negligible);
-        let serves = self.reuse && self.used <= STALE_AFTER && self.factored.0 == secant && self.factor.is_some();
+        let serves = self.reuse && self.used <= STALE_AFTER && self.factored == secant && self.factor.is_some();
         self.used = 0;
         if !serves {
             // A singular system has no factor; the solve then says so by what it returns.

@@ -53,30 +53,6 @@ impl SparseColumns {
         Self { places, entries }
     }
 
-    /// Place, row and value of each entry, one after the other.
-    pub fn to_triplets(&self) -> Vec<f64> {
-        let columns = self.places.iter().zip(&self.entries);
-        let triplets = |(&place, entries): (&usize, &Vec<(usize, f64)>)| {
-            entries.iter().flat_map(|&(row, value)| [place as f64, row as f64, value]).collect::<Vec<_>>()
-        };
-        columns.flat_map(triplets).collect()
-    }
-
-    /// The columns that [`Self::to_triplets`] gave the entries of.
-    pub fn from_triplets(triplets: &[f64]) -> Self {
-        let mut columns = Self::default();
-        for &[place, row, value] in triplets.as_chunks().0 {
-            if columns.places.last() != Some(&(place as usize)) {
-                columns.places.push(place as usize);
-                columns.entries.push(Vec::new());
-            }
-            if let Some(entries) = columns.entries.last_mut() {
-                entries.push((row as usize, value));
-            }
-        }
-        columns
-    }
-
     /// T v as (row, force), for v given by component.
     pub fn multiply(&self, v: impl Fn(usize) -> f64) -> impl Iterator<Item = (usize, f64)> {
         self.places.iter().zip(&self.entries).flat_map(move |(&place, entries)| {
