@@ -29,7 +29,7 @@ law = "coulomb_tanh"
 coefficient = 0.2
 regularisation = 2e-4
 [solver]
-tolerance = 1e-12
+tolerance = 1e-14
 [[phase]]
 duration = 1.0
 steps = 3

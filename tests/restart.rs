@@ -93,7 +93,7 @@ fn wait_for(child: &mut Child, results: &Path, count: usize) {
 /// Twenty kills at moments that no pattern of the program's can follow.
 #[test]
 fn nothing_is_lost_by_twenty_kills() {
-    for (material, solver) in [(ratio(), "strategy = \"monolithic\""), (ratio(), "")] {
+    for (material, solver) in [(ratio(), "strategy = \"monolithic\""), (ratio(), ""), (bulk(), "")] {
         let directory = tempfile::tempdir().unwrap();
         let scene = scene(directory.path(), 300, &material, solver);
         let (whole, killed) = (directory.path().join("whole.h5"), directory.path().join("killed.h5"));
@@ -139,7 +139,7 @@ fn nothing_is_lost_by_twenty_kills() {
 fn a_signal_to_one_rank_stops_all() {
     let directory = tempfile::tempdir().unwrap();
     for (material, solver, within) in
-        [(ratio(), "", 0.0), (bulk(), "tolerance = 1e-13\nstrategy = \"monolithic\"", 1e-10)]
+        [(ratio(), "", 0.0), (bulk(), "", 0.0), (bulk(), "tolerance = 1e-13\nstrategy = \"monolithic\"", 1e-10)]
     {
         let scene = scene(directory.path(), 40, &material, solver);
         let (whole, stopped) = (directory.path().join("whole.h5"), directory.path().join("stopped.h5"));
@@ -159,6 +159,25 @@ fn a_signal_to_one_rank_stops_all() {
             output_of(run(&mut program(ranks), &scene, &stopped).args(["--resume", "--set", "output.bulk_at=[]"]));
             assert_same(&whole, &stopped, within);
         }
+    }
+}
+
+/// A face so large that steps are solved with factors of steps before: these are part of the state.
+#[test]
+fn factors_that_serve_for_later_steps_come_back() {
+    for material in [ratio(), bulk()] {
+        let directory = tempfile::tempdir().unwrap();
+        let scene = scene(directory.path(), 40, &material, "");
+        let (whole, killed) = (directory.path().join("whole.h5"), directory.path().join("killed.h5"));
+        let cells = ["--set", "layer.cells=[640, 3]"];
+        output_of(run(&mut program(1), &scene, &whole).args(cells));
+        let mut child = run(&mut program(1), &scene, &killed).args(cells).stdout(Stdio::null()).spawn().unwrap();
+        wait_for(&mut child, &killed, 8);
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert!(checkpoint::read(&killed).unwrap().unwrap().fields.iter().any(|(name, _)| name == "factor"));
+        output_of(run(&mut program(1), &scene, &killed).args(cells).arg("--resume"));
+        assert_same(&whole, &killed, 0.0);
     }
 }
 
