@@ -140,7 +140,7 @@ fn nothing_is_lost_by_twenty_kills() {
 fn a_signal_to_one_rank_stops_all() {
     let directory = tempfile::tempdir().unwrap();
     for (material, solver, within) in
-        [(ratio(), "", 0.0), (bulk(), "tolerance = 1e-13\nstrategy = \"monolithic\"", 1e-10)]
+        [(ratio(), "", 0.0), (bulk(), "", 0.0), (bulk(), "tolerance = 1e-13\nstrategy = \"monolithic\"", 1e-10)]
     {
         let scene = scene(directory.path(), 40, &material, solver);
         let (whole, stopped) = (directory.path().join("whole.h5"), directory.path().join("stopped.h5"));
