@@ -86,9 +86,11 @@ fn one_profile_written_three_ways() {
     let directory = directory.path();
     let harmonic = run(directory, HARMONIC, 1);
     let formula = "profile = \"expression\"\nformula = \"5e-4*(1-cos(2*pi*x))\"\n";
+    // 1 - cos loses digits that 2 sin^2 of the half angle keeps: eps times the amplitude, 1e-19 m, of a penetration
+    // of 1e-8 m and up is 1e-11 of the traction there.
     for ranks in [1, 2] {
         let expression = difference(&harmonic, &run(directory, formula, ranks));
-        assert!(expression < 1e-12, "expression on {ranks}: {expression:e}");
+        assert!(expression < 1e-11, "expression on {ranks}: {expression:e}");
     }
     // Linear interpolation is off by (2 pi)^2 / (8 n^2) of the amplitude in height, by 2 pi / (2 n) in slope.
     let sampled = "profile = \"sampled\"\nfile = \"data/cosine.txt\"\nextend = \"periodic\"\n";

@@ -95,7 +95,7 @@ fn wait_for(child: &mut Child, results: &Path, count: usize) {
 fn nothing_is_lost_by_twenty_kills() {
     for (material, solver) in [(ratio(), "strategy = \"monolithic\""), (ratio(), ""), (bulk(), "")] {
         let directory = tempfile::tempdir().unwrap();
-        let scene = scene(directory.path(), 300, &material, solver);
+        let scene = scene(directory.path(), 600, &material, solver);
         let (whole, killed) = (directory.path().join("whole.h5"), directory.path().join("killed.h5"));
         output_of(&mut run(&mut program(1), &scene, &whole));
         let mut rows_before = 0;
@@ -108,7 +108,7 @@ fn nothing_is_lost_by_twenty_kills() {
             let random = kill.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407) >> 40;
             wait_for(&mut child, &killed, (random % 5) as usize);
             std::thread::sleep(Duration::from_micros(random % 20_011));
-            assert!(child.try_wait().unwrap().is_none(), "kill {kill}: ended by itself");
+            assert_eq!(child.try_wait().unwrap(), None, "kill {kill}: ended by itself");
             child.kill().unwrap();
             child.wait().unwrap();
             if !killed.exists() {
