@@ -42,8 +42,8 @@ impl Ramp {
             Self::Sequential => VIRIDIS,
             Self::Diverging => BLUE_RED,
         };
-        // `max` takes a number before what is none; `clamp` would hand that on.
-        let place = part.max(0.0).min(1.0) * (stops.len() - 1) as f64;
+        let part = if part.is_nan() { 0.0 } else { part.clamp(0.0, 1.0) };
+        let place = part * (stops.len() - 1) as f64;
         let first = (place as usize).min(stops.len() - 2);
         let (low, high, rest) = (stops[first], stops[first + 1], place - first as f64);
         let mix = |a: u8, b: u8| (f64::from(a) + rest * (f64::from(b) - f64::from(a))).round() as u8;
