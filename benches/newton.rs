@@ -81,7 +81,7 @@ fn run(directory: &Path, cells: usize, strategy: &str) -> Times {
         solve: event("MatSolve"),
         output: part("output "),
         total: part("assembly ") + part("linear solver ") + part("output "),
-        memory: words.split_once("peak ").map_or(0.0, |(_, rest)| rest.split(' ').next().unwrap().parse().unwrap()),
+        memory: words.split_once("at most ").map_or(0.0, |(_, rest)| rest.split(' ').next().unwrap().parse().unwrap()),
     }
 }
 
