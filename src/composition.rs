@@ -1,20 +1,24 @@
 //! The composition root: the one place that matches on what a scene asks for and builds the parts for it.
 
+mod body;
+
+use std::path::Path;
+
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use crate::bulk::{Bulk, Part, Series};
 use crate::element::mpjr::Quadrature;
 use crate::error::Result;
 use crate::friction::Friction;
 use crate::interface::{Interface, Laws};
 use crate::loading::{self, Motion, Phase};
-use crate::mesh::{Layer, Mesh, Sides};
+use crate::mesh::Mesh;
 use crate::petsc::{Matrix, Settings, Vector};
 use crate::profile::{Circle, Harmonic, Parabola, Profile, Repeated, Wedge};
-use crate::rheology::{Arm, Memory, Prony};
 use crate::scene::{self, Scene, When};
-use crate::solve::{Body, Limits, Moduli, Monolithic, TransientProblem};
+use crate::solve::{Body, Limits, Monolithic, TransientProblem};
+
+pub use body::mesh_alone;
 
 /// A scene made ready to run.
 pub struct Problem {
@@ -32,14 +36,14 @@ pub struct Problem {
     pub mesh: Mesh,
 }
 
-/// Builds what `scene` asks for, distributed over `comm`.
-pub fn build(comm: &SimpleCommunicator, scene: &Scene) -> Result<Problem> {
-    let mesh = layer(&scene.layer).mesh();
+/// Builds what `scene`, read from `file`, asks for, distributed over `comm`.
+pub fn build(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Problem> {
+    let mesh = body::mesh(comm, scene, file)?;
     let face = mesh.face.clone();
-    let moduli = moduli(&scene.material);
-    let body = Body::new(comm.duplicate(), mesh.clone(), moduli)?;
+    let solid = body::Solid::new(scene);
+    let body = Body::new(comm.duplicate(), mesh.clone(), body::quadrilateral(scene), solid.regions.clone())?;
     let u = body.vector()?;
-    let bulk = bulk(scene, &body, moduli, &u)?;
+    let bulk = solid.bulk(&body, &u)?;
     let laws = Laws {
         profile: profile(scene),
         penalty: scene.contact.penalty,
@@ -58,49 +62,9 @@ pub fn build(comm: &SimpleCommunicator, scene: &Scene) -> Result<Problem> {
     Ok(Problem { strategy, tangent, u, phases: phases(scene), settings, mesh })
 }
 
-fn layer(layer: &scene::Layer) -> Layer {
-    let sides = match layer.sides {
-        scene::Sides::Periodic => Sides::Periodic,
-        scene::Sides::Free => Sides::Free,
-        scene::Sides::Roller => Sides::Roller,
-        scene::Sides::Fixed => Sides::Fixed,
-    };
-    Layer { width: layer.width, depth: layer.depth, cells: layer.cells, grading: layer.grading, sides }
-}
-
-/// K = 2 G (1 + nu) / (3 (1 - 2 nu)), instantaneous.
-fn moduli(material: &scene::Material) -> Moduli {
-    let (g, nu) = (material.shear_modulus, material.poisson_ratio);
-    Moduli { shear: g, bulk: 2.0 * g * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu)) }
-}
-
-/// One part where shear and bulk modulus relax together (or not at all), two where only the shear modulus does.
-fn bulk(scene: &Scene, body: &Body, moduli: Moduli, layout: &Vector) -> Result<Bulk> {
-    let material = &scene.material;
-    let prony = Prony { arms: material.arms.iter().map(|a| Arm { weight: a.weight, time: a.time }).collect() };
-    let times = prony.arms.iter().map(|arm| arm.time).collect();
-    let series = (!prony.arms.is_empty())
-        .then(|| Series { long_term: prony.long_term(), weights: prony.arms.iter().map(|arm| arm.weight).collect() });
-    let part = |moduli, diagonal, series| Ok(Part { stiffness: body.stiffness(moduli, diagonal)?, series });
-    let constant_bulk = material.poisson_rule == Some(scene::PoissonRule::ConstantBulkModulus);
-    let parts = if constant_bulk && series.is_some() {
-        vec![
-            part(Moduli { bulk: 0.0, ..moduli }, moduli.shear, series)?,
-            part(Moduli { shear: 0.0, ..moduli }, 0.0, None)?,
-        ]
-    } else {
-        vec![part(moduli, moduli.shear, series)?]
-    };
-    let memory = match material.memory {
-        scene::Memory::Exponential => Memory::Exponential,
-        scene::Memory::BackwardEuler => Memory::BackwardEuler,
-    };
-    Bulk::new(parts, times, memory, layout)
-}
-
 /// Under periodic sides every profile repeats with the layer's period.
 fn profile(scene: &Scene) -> Box<dyn Profile> {
-    let period = (scene.layer.sides == scene::Sides::Periodic).then_some(scene.layer.width);
+    let period = scene.period();
     fn repeat<P: Profile + 'static>(profile: P, centre: f64, period: Option<f64>) -> Box<dyn Profile> {
         match period {
             Some(period) => Box::new(Repeated { profile, centre, period }),

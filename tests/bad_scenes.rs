@@ -4,7 +4,18 @@
 #[allow(dead_code)]
 mod common;
 
-use mpjr::scene::{Source, read};
+use std::path::Path;
+
+use mpjr::error::Result;
+use mpjr::scene::{Scene, Source, read};
+
+/// Reads the mesh where the scene names a file.
+fn mesh_of(scene: &Scene, file: &Path) -> Result<()> {
+    match scene.layer() {
+        Some(_) => Ok(()),
+        None => mpjr::composition::mesh_alone(scene, file).map(|_| ()),
+    }
+}
 
 #[test]
 fn each_bad_scene_gives_its_message() {
@@ -13,7 +24,9 @@ fn each_bad_scene_gives_its_message() {
     let mut wrong = Vec::new();
     for scene in &scenes {
         let source = Source { file: scene.file.clone(), overrides: scene.overrides() };
-        let (message, exit) = match read(&scene.text, &source) {
+        // What is wrong with a mesh shows when it is read.
+        let outcome = read(&scene.text, &source).and_then(|read| mesh_of(&read, &scene.file));
+        let (message, exit) = match outcome {
             Ok(_) => ("(accepted)".to_owned(), 0),
             Err(error) => {
                 let message = error.to_string();

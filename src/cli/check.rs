@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::{is_first_process, summary};
+use crate::composition;
 use crate::error::{Error, Result};
 use crate::scene::{self, Source};
 
@@ -23,9 +24,14 @@ pub fn run(arguments: &CheckArguments) -> Result<()> {
     let file = &arguments.scene;
     let text = std::fs::read_to_string(file).map_err(|error| Error::file(file, format!("cannot be read: {error}")))?;
     let scene = scene::read(&text, &Source { file: file.clone(), overrides: arguments.set.clone() })?;
+    // A layer's mesh has no more to say than its scene.
+    let mesh = match scene.layer() {
+        Some(_) => None,
+        None => Some(composition::mesh_alone(&scene, file)?),
+    };
     if is_first_process() {
         println!("{}", scene.to_toml().trim_end());
-        println!("\n{}", summary::plan(&scene));
+        println!("\n{}", summary::plan(&scene, mesh.as_ref()));
     }
     Ok(())
 }

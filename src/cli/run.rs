@@ -62,7 +62,7 @@ fn solve(session: &Session, world: &SimpleCommunicator, arguments: &RunArguments
     let scene = scene::read(&text, &Source { file: file.clone(), overrides: arguments.set.clone() })?;
     let out = arguments.out.clone().unwrap_or_else(|| default_output(file));
 
-    let problem = composition::build(world, &scene)?;
+    let problem = composition::build(world, &scene, file)?;
     let Problem { mut strategy, mut tangent, mut u, phases, settings, mesh } = problem;
     let steps = phases.iter().map(|phase| phase.steps.len()).sum();
     let metadata = Metadata {
@@ -139,6 +139,6 @@ fn bulk_plan(scene: &Scene, mesh: &Mesh, phases: &[Phase]) -> Option<BulkPlan> {
     Some(BulkPlan {
         frames: phases.iter().flat_map(|phase| &phase.steps).filter(|target| target.bulk_output).count(),
         coordinates: mesh.nodes.iter().map(|node| [node.x, node.y]).collect(),
-        cells: mesh.cells.iter().map(|cell| cell.map(i64::from)).collect(),
+        cells: mesh.cells.iter().map(|cell| cell.four().map(i64::from)).collect(),
     })
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::time::Duration;
 
+use crate::mesh::{Cell, Mesh};
 use crate::output::{HistoryRow, Status};
 use crate::petsc;
 use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides};
@@ -11,13 +12,21 @@ use crate::solve::Counts;
 /// What is modelled and what is not: (modelled, not modelled).
 pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
     let (mut yes, mut no) = (Vec::new(), Vec::new());
-    let arms = scene.material.arms.len();
-    match (arms, scene.material.poisson_rule) {
-        (0, _) => no.push("memory (linear elastic)".to_owned()),
-        (_, Some(PoissonRule::ConstantBulkModulus)) => {
-            yes.push(format!("viscoelastic memory: {arms} arm(s) of the shear modulus, constant bulk modulus"));
+    for material in &scene.materials {
+        let place = match (&material.region, scene.materials.len()) {
+            (Some(region), _) => format!("{region}: "),
+            (None, 1) => String::new(),
+            (None, _) => material.thickness.map_or("below: ".to_owned(), |thickness| format!("{thickness} m: ")),
+        };
+        let arms = material.arms.len();
+        match (arms, material.poisson_rule) {
+            (0, _) => no.push(format!("{place}memory (linear elastic)")),
+            (_, Some(PoissonRule::ConstantBulkModulus)) => {
+                let text = "arm(s) of the shear modulus, constant bulk modulus";
+                yes.push(format!("{place}viscoelastic memory: {arms} {text}"));
+            }
+            _ => yes.push(format!("{place}viscoelastic memory: {arms} arm(s), constant Poisson ratio")),
         }
-        _ => yes.push(format!("viscoelastic memory: {arms} arm(s), constant Poisson ratio")),
     }
     match scene.friction {
         Some(Friction::CoulombTanh { coefficient, regularisation }) => {
@@ -42,22 +51,19 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
     (yes, no)
 }
 
-/// What `mpjr check` prints after the resolved scene.
-pub fn plan(scene: &Scene) -> String {
+/// What `mpjr check` prints after the resolved scene; `mesh` where it comes from a file.
+pub fn plan(scene: &Scene, mesh: Option<&Mesh>) -> String {
     let (yes, no) = modelled(scene);
-    let estimate = Estimate::of(scene);
-    let [nx, nz] = scene.layer.cells;
-    let sides = match scene.layer.sides {
-        Sides::Periodic => "periodic",
-        Sides::Free => "free",
-        Sides::Roller => "roller",
-        Sides::Fixed => "fixed",
+    let unknowns = match (scene.layer(), mesh) {
+        (Some(layer), _) => layer.unknowns(),
+        (None, mesh) => mesh.map_or(0, Mesh::free_components),
     };
+    let estimate = Estimate::of(scene, unknowns);
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "modelled:      {}", yes.join("\n               "));
     let _ = writeln!(text, "not modelled:  {}", no.join("\n               "));
-    let _ = writeln!(text, "mesh:          {nx} x {nz} cells, {sides} sides, {} unknowns", scene.unknowns());
+    let _ = writeln!(text, "mesh:          {}, {unknowns} unknowns", extent(scene, mesh));
     let _ = writeln!(
         text,
         "loading:       {} phase(s), {} steps, {:.6} s",
@@ -77,6 +83,33 @@ pub fn plan(scene: &Scene) -> String {
         estimate.memory / 1e9
     );
     text
+}
+
+/// The mesh in words.
+fn extent(scene: &Scene, mesh: Option<&Mesh>) -> String {
+    if let Some(layer) = scene.layer() {
+        let sides = match layer.sides {
+            Sides::Periodic => "periodic",
+            Sides::Free => "free",
+            Sides::Roller => "roller",
+            Sides::Fixed => "fixed",
+        };
+        return format!("{} x {} cells, {sides} sides", layer.cells[0], layer.cells[1]);
+    }
+    let Some(mesh) = mesh else { return String::new() };
+    let triangles = mesh.cells.iter().filter(|cell| matches!(cell, Cell::Triangle(_))).count();
+    let quadrilaterals = mesh.cells.len() - triangles;
+    let lock = match triangles > 0 && scene.materials.iter().any(|material| material.poisson_ratio > 0.45) {
+        true => " (they lock near a Poisson ratio of 0.5)",
+        false => "",
+    };
+    let from = mesh.face.x.first().copied().unwrap_or(0.0);
+    let to = mesh.face.x.last().copied().unwrap_or(0.0);
+    format!(
+        "{quadrilaterals} quadrilaterals, {triangles} triangles{lock}, contact face of {} edges from x = {from:.6} to \
+         {to:.6} m",
+        mesh.face.edges.len()
+    )
 }
 
 /// What a run did.
@@ -146,8 +179,8 @@ struct Estimate {
 }
 
 impl Estimate {
-    fn of(scene: &Scene) -> Self {
-        let unknowns = scene.unknowns() as f64;
+    fn of(scene: &Scene, unknowns: usize) -> Self {
+        let unknowns = unknowns as f64;
         // Nested dissection in the plane: n^1.5 operations, n log n entries. Half for a symmetric factorisation.
         let symmetry = if scene.friction.is_some() { 1.0 } else { 0.6 };
         let newton = 3.5;

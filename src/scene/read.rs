@@ -1,6 +1,7 @@
 //! The keys of a scene: which there are, what each accepts, and what it becomes. What one key has to do with another
 //! is in `checks`.
 
+mod body;
 pub(super) mod phase;
 
 use std::path::Path;
@@ -9,8 +10,8 @@ use toml::Table;
 
 use super::keys::{self, Quantity, Section};
 use super::{
-    Arm, Contact, Friction, Indenter, Layer, Material, Memory, Output, PoissonRule, Quadrature, Scene, Sides, Solver,
-    Source, Strategy, When, checks, overrides,
+    Arm, Body, Contact, Friction, Indenter, Material, Memory, Output, PoissonRule, Quadrature, Scene, Solver, Source,
+    Strategy, When, checks, overrides,
 };
 use crate::error::{Error, Result};
 
@@ -39,16 +40,17 @@ pub fn parse(text: &str, file: &Path) -> Result<Table> {
 pub fn from_table(table: &Table, file: &Path) -> Result<Scene> {
     let root = Section::root(file, table);
     root.later(&[
-        ("mesh", "use [layer]"),
-        ("element", "remove it: the element is the 4-node quadrilateral"),
+        ("element", "give it in [layer] or [mesh]"),
         ("temperature", NO_TEMPERATURE),
         ("reference_temperature", NO_TEMPERATURE),
     ])?;
-    root.only(&["title", "layer", "material", "indenter", "contact", "friction", "phase", "solver", "output"])?;
+    root.only(&["title", "layer", "mesh", "material", "indenter", "contact", "friction", "phase", "solver", "output"])?;
+    let title = title(&root, file)?;
+    let body = body::read(&root, file)?;
     let mut scene = Scene {
-        title: title(&root, file)?,
-        layer: layer(&root.section("layer")?)?,
-        material: material(&root)?,
+        title,
+        materials: materials(&root, &body)?,
+        body,
         indenter: indenter(&root.section("indenter")?)?,
         contact: contact(&root.section("contact")?)?,
         friction: root.optional_section("friction")?.as_ref().map(friction).transpose()?,
@@ -68,33 +70,58 @@ fn title(root: &Section, file: &Path) -> Result<String> {
     Ok(root.optional_text("title", "a text on one line")?.unwrap_or_else(stem))
 }
 
-fn layer(section: &Section) -> Result<Layer> {
-    const LENGTH: Quantity = Quantity::positive("a positive length in m");
-    // Beyond these the cells at one face have no height to speak of.
-    const GRADING: Quantity =
-        Quantity { what: "a ratio of cell heights from 1e-6 to 1e6", accepts: |ratio| (1e-6..=1e6).contains(&ratio) };
-    const SIDES: [(&str, Sides); 4] =
-        [("periodic", Sides::Periodic), ("free", Sides::Free), ("roller", Sides::Roller), ("fixed", Sides::Fixed)];
-
-    section.later(&[("element", "remove it: the element is the 4-node quadrilateral")])?;
-    section.only(&["width", "depth", "cells", "grading", "sides"])?;
-    Ok(Layer {
-        width: section.number("width", LENGTH)?,
-        depth: section.number("depth", LENGTH)?,
-        cells: section.pair(
-            "cells",
-            "two whole numbers, each at least 1: [along the face, through the depth]",
-            COUNT,
-        )?,
-        grading: section.optional_number("grading", GRADING)?.unwrap_or(1.0),
-        sides: section.choice("sides", &SIDES, &[])?,
-    })
-}
-
 /// Whole numbers from 1.
 const COUNT: std::ops::RangeInclusive<usize> = 1..=usize::MAX;
 
-fn material(root: &Section) -> Result<Material> {
+/// `[material]`, or one `[[material]]` for each stratum of a layer or region of a mesh.
+fn materials(root: &Section, body: &Body) -> Result<Vec<Material>> {
+    let mut list: Vec<Material> = Vec::new();
+    let Ok(sections) = root.sections("material", "") else {
+        return Ok(vec![material(&root.section("material")?, body, true)?]);
+    };
+    let count = sections.len();
+    for (index, section) in sections.into_iter().enumerate() {
+        let last = index + 1 == count;
+        let region = section.optional_text("region", REGION)?;
+        let known = list.iter().position(|other| region.is_some() && other.region == region);
+        if let Some(first) = known {
+            return Err(section.error("region", format!("is the region of material {first} too; give another")));
+        }
+        let material = match &region {
+            Some(name) => material(&section.clone().called(format!("material.{name}")), body, last)?,
+            None => material(&section, body, last)?,
+        };
+        if matches!(body, Body::Mesh(_)) && region.is_none() && count > 1 {
+            return Err(section.missing("region", REGION));
+        }
+        list.push(material);
+    }
+    if list.is_empty() { Err(root.missing("material", "the [material] table")) } else { Ok(list) }
+}
+
+const REGION: &str = "the name of the physical surface that it fills";
+
+/// The thickness of a stratum, m: of all but the lowest.
+fn thickness(section: &Section, body: &Body, last: bool) -> Result<Option<f64>> {
+    const THICKNESS: Quantity = Quantity::positive("a positive thickness in m, from the contact face down");
+
+    match body {
+        Body::Mesh(_) if section.has("thickness") => {
+            Err(section.error("thickness", "is for the strata of a [layer]; give region, a physical surface"))
+        }
+        Body::Layer(_) if section.has("region") => {
+            Err(section.error("region", "is for a [mesh]; give thickness, that of a stratum of the layer"))
+        }
+        Body::Layer(_) if last && section.has("thickness") => {
+            Err(section.error("thickness", "remove it: the last material fills the rest of the layer"))
+        }
+        Body::Layer(_) if !last => section.number("thickness", THICKNESS).map(Some),
+        _ => Ok(None),
+    }
+}
+
+/// One material; `last` if none follows.
+fn material(section: &Section, body: &Body, last: bool) -> Result<Material> {
     const RATIO: Quantity = Quantity {
         what: "a ratio above -1 and below 0.5 (0.5 is incompressible; come near it with, say, 0.499)",
         accepts: |ratio| ratio > -1.0 && ratio < 0.5,
@@ -104,11 +131,6 @@ fn material(root: &Section) -> Result<Material> {
     const MEMORIES: [(&str, Memory); 2] =
         [("exponential", Memory::Exponential), ("backward_euler", Memory::BackwardEuler)];
 
-    if root.values("material", "").is_ok_and(|regions| !regions.is_empty()) {
-        let reason = "several materials are not supported by this version; give one [material] table";
-        return Err(root.error("material", reason));
-    }
-    let section = root.section("material")?;
     section.later(&[
         ("file", "write its table in the scene"),
         ("fractional", "give shear_modulus and arms, a Prony series of the power law"),
@@ -118,9 +140,19 @@ fn material(root: &Section) -> Result<Material> {
         ("wlf", NO_TEMPERATURE),
         ("arrhenius", NO_TEMPERATURE),
     ])?;
-    section.only(&["shear_modulus", "young_modulus", "poisson_ratio", "arms", "poisson_rule", "memory"])?;
+    section.only(&[
+        "shear_modulus",
+        "young_modulus",
+        "poisson_ratio",
+        "arms",
+        "poisson_rule",
+        "memory",
+        "region",
+        "thickness",
+    ])?;
+    let thickness = thickness(section, body, last)?;
     let poisson_ratio = section.number("poisson_ratio", RATIO)?;
-    let arms = arms(&section)?;
+    let arms = arms(section)?;
     let poisson_rule = section.optional_choice("poisson_rule", &RULES, &["bulk_arms"])?;
     if !arms.is_empty() && poisson_rule.is_none() {
         let reason = "missing, and required with arms: give \"constant_ratio\" (the bulk modulus relaxes with the \
@@ -128,7 +160,9 @@ fn material(root: &Section) -> Result<Material> {
         return Err(section.error("poisson_rule", reason));
     }
     Ok(Material {
-        shear_modulus: shear_modulus(&section, poisson_ratio)?,
+        region: section.optional_text("region", REGION)?,
+        thickness,
+        shear_modulus: shear_modulus(section, poisson_ratio)?,
         poisson_ratio,
         arms,
         poisson_rule,

@@ -1,13 +1,14 @@
 //! The body as a distributed mesh: its stiffness, and its fields for output.
 
 use mpi::topology::SimpleCommunicator;
-use nalgebra::{SVector, Vector4};
+use nalgebra::{SVector, Vector2, Vector4};
 
 use super::BulkFields;
 use crate::bulk::Bulk;
-use crate::element::quad4::{self, Answer};
+use crate::element::plane::{Answer, Split};
+use crate::element::{Quadrilateral, bbar, quad4, tri3};
 use crate::error::Result;
-use crate::mesh::{Mesh, Numbering};
+use crate::mesh::{Cell, Mesh, Numbering};
 use crate::petsc::{Gather, Matrix, Pattern, Vector};
 
 /// Shear and bulk modulus, Pa.
@@ -19,14 +20,25 @@ pub struct Moduli {
     pub bulk: f64,
 }
 
-/// A mesh distributed over the ranks of a communicator, of one material.
+/// What a region of the mesh is made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Region {
+    /// Instantaneous.
+    pub moduli: Moduli,
+    /// The part of the bulk that the shear modulus relaxes with.
+    pub shear_part: usize,
+    /// The part of the bulk that the bulk modulus relaxes with.
+    pub bulk_part: usize,
+}
+
+/// A mesh distributed over the ranks of a communicator.
 pub struct Body {
     mesh: Mesh,
     numbering: Numbering,
     pattern: Pattern,
     comm: SimpleCommunicator,
-    /// Instantaneous.
-    moduli: Moduli,
+    quadrilateral: Quadrilateral,
+    regions: Vec<Region>,
     /// What output needs, made when first asked for.
     recovery: Option<Recovery>,
 }
@@ -35,17 +47,22 @@ pub struct Body {
 struct Recovery {
     cells: Vec<usize>,
     /// Per cell, its corners' places in the gathered displacements (by node).
-    corners: Vec<[usize; 4]>,
+    places: Vec<Cell>,
     gather: Gather,
     gathered: usize,
 }
 
 impl Body {
-    /// Distributes the mesh.
-    pub fn new(comm: SimpleCommunicator, mesh: Mesh, moduli: Moduli) -> Result<Self> {
+    /// Distributes the mesh; `regions` says what each of its regions is made of.
+    pub fn new(
+        comm: SimpleCommunicator,
+        mesh: Mesh,
+        quadrilateral: Quadrilateral,
+        regions: Vec<Region>,
+    ) -> Result<Self> {
         let numbering = Numbering::new(&comm, &mesh)?;
         let pattern = numbering.pattern(&mesh);
-        Ok(Self { mesh, numbering, pattern, comm, moduli, recovery: None })
+        Ok(Self { mesh, numbering, pattern, comm, quadrilateral, regions, recovery: None })
     }
 
     /// The mesh.
@@ -63,15 +80,25 @@ impl Body {
         Vector::new(&self.comm, 2 * self.numbering.owned.len())
     }
 
-    /// G K_dev + K K_vol, with `diagonal` for the held unknowns.
-    pub fn stiffness(&self, moduli: Moduli, diagonal: f64) -> Result<Matrix> {
+    /// G K_dev + K K_vol with the moduli of each region, and `diagonal` for the held unknowns.
+    ///
+    /// A region of zero moduli has its zeros in the matrix, so that all matrices of a body have one pattern.
+    pub fn stiffness(&self, moduli: &[Moduli], diagonal: f64) -> Result<Matrix> {
         let mut matrix = Matrix::new(&self.comm, &self.pattern)?;
         for &cell in &self.numbering.cells {
-            let split = quad4::stiffness(&self.mesh.corners(cell));
-            let stiffness = split.deviatoric * moduli.shear + split.volumetric * moduli.bulk;
-            let nodes = self.mesh.cell_unknowns(cell).map(|unknown| self.numbering.global[unknown as usize]);
+            let Moduli { shear, bulk } = moduli[usize::from(self.mesh.regions[cell])];
+            let global = |node: u32| self.numbering.global[self.mesh.unknown[node as usize] as usize];
             // Column-major and symmetric, so row-major too.
-            matrix.add_blocks(&nodes, stiffness.as_slice())?;
+            match self.mesh.cells[cell] {
+                Cell::Triangle(corners) => {
+                    let stiffness = tri3::stiffness(&self.mesh.points(corners)).with(shear, bulk);
+                    matrix.add_blocks(&corners.map(global), stiffness.as_slice())?;
+                }
+                Cell::Quadrilateral(corners) => {
+                    let stiffness = self.quadrilateral(&self.mesh.points(corners)).with(shear, bulk);
+                    matrix.add_blocks(&corners.map(global), stiffness.as_slice())?;
+                }
+            }
         }
         matrix.assemble()?;
         matrix.fix(&self.held(), diagonal)?;
@@ -104,18 +131,13 @@ impl Body {
             effective.push(values);
             Ok(())
         })?;
-        // One part answers to both moduli, or the first to shear and the second to bulk.
-        let (shear, dilatation) = (&effective[0], &effective[effective.len() - 1]);
         let mut sums = vec![(Vector4::<f64>::zeros(), 0.0); self.numbering.owned.len()];
-        for (&cell, places) in recovery.cells.iter().zip(&recovery.corners) {
-            let at = |values: &[f64]| SVector::from_fn(|row, _| values[2 * places[row / 2] + row % 2]);
-            let (u_shear, u_bulk) = (at(shear), at(dilatation));
-            let stress = quad4::corner_stress(
-                &self.mesh.corners(cell),
-                Answer { modulus: self.moduli.shear, displacement: &u_shear },
-                Answer { modulus: self.moduli.bulk, displacement: &u_bulk },
-            );
-            for (unknown, stress) in self.mesh.cell_unknowns(cell).into_iter().zip(stress) {
+        for (&cell, places) in recovery.cells.iter().zip(&recovery.places) {
+            let region = self.regions[usize::from(self.mesh.regions[cell])];
+            let answers = [(region.moduli.shear, region.shear_part), (region.moduli.bulk, region.bulk_part)]
+                .map(|(modulus, part)| (modulus, effective[part].as_slice()));
+            let stress = corner_stress(&self.mesh, self.quadrilateral, cell, places, answers);
+            for (&unknown, stress) in self.mesh.cell_unknowns(cell).corners().iter().zip(stress) {
                 if let Some(local) = self.numbering.local(unknown) {
                     sums[local].0 += stress;
                     sums[local].1 += 1.0;
@@ -134,6 +156,14 @@ impl Body {
         Ok(fields)
     }
 
+    /// The split stiffness of a quadrilateral.
+    fn quadrilateral(&self, corners: &[Vector2<f64>; 4]) -> Split<8> {
+        match self.quadrilateral {
+            Quadrilateral::Plain => quad4::stiffness(corners),
+            Quadrilateral::MeanDilatation => bbar::stiffness(corners),
+        }
+    }
+
     /// The held unknowns that this rank owns, as global row numbers.
     fn held(&self) -> Vec<i32> {
         let rows = |&unknown: &u32| {
@@ -144,23 +174,52 @@ impl Body {
     }
 }
 
+/// Stress at the corners of a cell (those of a triangle first), Pa. `answers`: the shear and the bulk modulus, Pa, each
+/// with the displacements that it answers to, of which the cell's are at `places`, node by node.
+fn corner_stress(
+    mesh: &Mesh,
+    kind: Quadrilateral,
+    cell: usize,
+    places: &Cell,
+    answers: [(f64, &[f64]); 2],
+) -> [Vector4<f64>; 4] {
+    let entry = |values: &[f64], row: usize| values[2 * places.corners()[row / 2] as usize + row % 2];
+    match mesh.cells[cell] {
+        Cell::Triangle(corners) => {
+            let [u, v] = answers.map(|(_, values)| SVector::from_fn(|row, _| entry(values, row)));
+            let [shear, bulk] = [(answers[0].0, &u), (answers[1].0, &v)]
+                .map(|(modulus, displacement)| Answer { modulus, displacement });
+            [tri3::stress(&mesh.points(corners), shear, bulk); 4]
+        }
+        Cell::Quadrilateral(corners) => {
+            let [u, v] = answers.map(|(_, values)| SVector::from_fn(|row, _| entry(values, row)));
+            let [shear, bulk] = [(answers[0].0, &u), (answers[1].0, &v)]
+                .map(|(modulus, displacement)| Answer { modulus, displacement });
+            match kind {
+                Quadrilateral::Plain => quad4::corner_stress(&mesh.points(corners), shear, bulk),
+                Quadrilateral::MeanDilatation => bbar::corner_stress(&mesh.points(corners), shear, bulk),
+            }
+        }
+    }
+}
+
 impl Recovery {
     fn new(mesh: &Mesh, numbering: &Numbering, layout: &Vector) -> Result<Self> {
-        let touches = |cell: &usize| mesh.cell_unknowns(*cell).iter().any(|&u| numbering.local(u).is_some());
+        let touches = |cell: &usize| mesh.cell_unknowns(*cell).corners().iter().any(|&u| numbering.local(u).is_some());
         let cells: Vec<usize> = (0..mesh.cells.len()).filter(touches).collect();
-        let mut unknowns: Vec<u32> = cells.iter().flat_map(|&cell| mesh.cell_unknowns(cell)).collect();
+        let mut unknowns: Vec<u32> = cells.iter().flat_map(|&cell| mesh.cell_unknowns(cell).four()).collect();
         unknowns.sort_unstable();
         unknowns.dedup();
         let mut place = vec![0; mesh.unknown_nodes()];
         for (i, &unknown) in unknowns.iter().enumerate() {
-            place[unknown as usize] = i;
+            place[unknown as usize] = i as u32;
         }
-        let corners = cells.iter().map(|&cell| mesh.cell_unknowns(cell).map(|u| place[u as usize])).collect();
+        let places = cells.iter().map(|&cell| mesh.cell_unknowns(cell).map(|u| place[u as usize])).collect();
         let indices: Vec<i32> = unknowns
             .iter()
             .map(|&unknown| numbering.global[unknown as usize])
             .flat_map(|node| [2 * node, 2 * node + 1])
             .collect();
-        Ok(Self { cells, corners, gathered: indices.len(), gather: Gather::new(layout, &indices)? })
+        Ok(Self { cells, places, gathered: indices.len(), gather: Gather::new(layout, &indices)? })
     }
 }

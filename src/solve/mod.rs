@@ -9,7 +9,7 @@ use crate::interface::{Fields, Interface, Surface, Totals};
 use crate::loading::{Phase, Placement};
 use crate::petsc::{Matrix, Step, Vector, Verdict};
 
-pub use body::{Body, Moduli};
+pub use body::{Body, Moduli, Region};
 pub use driver::{Counts, Driver, Limits};
 pub use monolithic::Monolithic;
 

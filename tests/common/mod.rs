@@ -1,6 +1,4 @@
 //! Shared by the integration tests; each uses a part of it.
-#![allow(dead_code)]
-
 pub mod mpi;
 pub mod sample;
 
@@ -68,5 +66,3 @@ pub fn scenes(path: &str) -> Vec<PathBuf> {
 pub fn bad_scenes() -> Vec<BadScene> {
     scenes("tests/scenes/bad").into_iter().map(BadScene::load).collect()
 }
-
-pub mod sample;
