@@ -5,19 +5,25 @@ mod body;
 use std::path::Path;
 
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::Communicator;
+use mpi::traits::{Communicator, Root};
 
+use crate::bulk::{Arms, Bulk};
 use crate::element::mpjr::Quadrature;
 use crate::error::Result;
 use crate::friction::Friction;
 use crate::interface::{Interface, Laws};
 use crate::loading::{self, Motion, Phase};
 use crate::mesh::Mesh;
-use crate::petsc::{Matrix, Settings, Vector};
+use crate::parallel::agree;
+use crate::petsc::{Linear, Matrix, Settings, Vector};
 use crate::profile::{Circle, Harmonic, Parabola, Profile, Repeated, Wedge};
 use crate::scene::{self, Scene, When};
-use crate::solve::{Body, Limits, Monolithic, TransientProblem};
+use crate::solve::{
+    Backing, Body, Compliance, Condensed, Following, Interior, LARGE_FACE, Limits, Monolithic, PeriodicColumn,
+    Relaxation, Remembering, Solid, Source, TransientProblem,
+};
 
+use body::Materials;
 pub use body::mesh_alone;
 
 /// A scene made ready to run.
@@ -38,28 +44,145 @@ pub struct Problem {
 
 /// Builds what `scene`, read from `file`, asks for, distributed over `comm`.
 pub fn build(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Problem> {
-    let mesh = body::mesh(comm, scene, file)?;
-    let face = mesh.face.clone();
-    let solid = body::Solid::new(scene);
-    let body = Body::new(comm.duplicate(), mesh.clone(), body::quadrilateral(scene), solid.regions.clone())?;
-    let u = body.vector()?;
-    let bulk = solid.bulk(&body, &u)?;
+    let materials = Materials::new(scene);
+    let solid = Solid {
+        mesh: body::mesh(comm, scene, file)?,
+        quadrilateral: body::quadrilateral(scene),
+        regions: materials.regions.clone(),
+    };
     let laws = Laws {
         profile: profile(scene),
         penalty: scene.contact.penalty,
         friction: scene.friction.as_ref().map(friction),
     };
-    let symmetric = laws.friction.is_none();
-    let interface = Interface::new(face, laws, quadrature(scene.contact.quadrature));
+    let interface = Interface::new(solid.mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
+    match form(scene) {
+        Form::Monolithic => monolithic(comm, scene, (solid, materials), interface),
+        Form::Following => following(comm, scene, (solid, materials), interface),
+        Form::Remembering => remembering(comm, scene, (solid, materials), interface),
+    }
+}
+
+/// How a scene is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// All unknowns.
+    Monolithic,
+    /// On the face; the interior follows it for all time.
+    Following,
+    /// On the face; the interior has a memory of its own.
+    Remembering,
+}
+
+/// How `scene` is solved: on its contact face unless it says otherwise.
+pub fn form(scene: &Scene) -> Form {
+    let follows = Materials::new(scene).relax_alike();
+    match scene.solver.strategy {
+        scene::Strategy::Monolithic => Form::Monolithic,
+        scene::Strategy::Auto | scene::Strategy::Condensed if follows => Form::Following,
+        scene::Strategy::Auto | scene::Strategy::Condensed => Form::Remembering,
+    }
+}
+
+fn monolithic(
+    comm: &SimpleCommunicator,
+    scene: &Scene,
+    (solid, materials): (Solid, Materials),
+    interface: Interface,
+) -> Result<Problem> {
+    let mesh = solid.mesh.clone();
+    let body = Body::new(comm.duplicate(), solid)?;
+    let u = body.vector()?;
+    let bulk = materials.bulk(&body, &u)?;
     let mut tangent = bulk.new_tangent()?;
     tangent.set_near_null_space(&mut body.coordinates()?)?;
-    if symmetric {
+    let linear = if interface.has_friction() { Linear::Lu } else { Linear::Cholesky };
+    if linear == Linear::Cholesky {
         tangent.declare_positive_definite()?;
     }
-    let limits = Limits::default();
-    let settings = Settings { symmetric, max_newton: limits.max_newton, max_cuts: limits.max_cuts };
     let strategy = Box::new(Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?);
-    Ok(Problem { strategy, tangent, u, phases: phases(scene), settings, mesh })
+    Ok(Problem { strategy, tangent, u, phases: phases(scene), settings: settings(linear), mesh })
+}
+
+fn following(
+    comm: &SimpleCommunicator,
+    scene: &Scene,
+    (solid, materials): (Solid, Materials),
+    interface: Interface,
+) -> Result<Problem> {
+    let u = face_vector(comm, &solid.mesh)?;
+    let mine = if comm.rank() == 0 { compliance(scene, &solid).map(Some) } else { Ok(None) };
+    let compliance = agree(comm, mine)?;
+    let mut softness = compliance.as_ref().map_or(0.0, Compliance::largest);
+    comm.process_at_rank(0).broadcast_into(&mut softness);
+    let mesh = solid.mesh.clone();
+    let Materials { series, times, memory, .. } = materials;
+    let relaxation = match series.into_iter().next().flatten() {
+        Some(series) => Some(Relaxation { arms: Arms::new(times, memory, &u)?, series }),
+        None => None,
+    };
+    let interior = Interior::new(comm, solid);
+    let backing = Following { compliance, softness, relaxation, interior, secant: 1.0 };
+    condensed(comm, scene, mesh, u, (interface, backing))
+}
+
+fn remembering(
+    comm: &SimpleCommunicator,
+    scene: &Scene,
+    (solid, materials): (Solid, Materials),
+    interface: Interface,
+) -> Result<Problem> {
+    let whole = if comm.rank() == 0 { whole_body(&solid, &materials).map(Some) } else { Ok(None) };
+    let source = periodic_column(scene, &solid).map_or(Source::Schur, Source::Periodic);
+    let mesh = solid.mesh;
+    let backing = Remembering::new(comm, agree(comm, whole)?, source)?;
+    let u = face_vector(comm, &mesh)?;
+    condensed(comm, scene, mesh, u, (interface, backing))
+}
+
+fn condensed<B: Backing + 'static>(
+    comm: &SimpleCommunicator,
+    scene: &Scene,
+    mesh: Mesh,
+    u: Vector,
+    (interface, backing): (Interface, B),
+) -> Result<Problem> {
+    let held: Vec<[bool; 2]> = mesh.face.unknown.iter().map(|&unknown| mesh.held[unknown as usize]).collect();
+    let linear = if 2 * held.len() > LARGE_FACE { Linear::OwnIterative } else { Linear::Own };
+    let tangent = Matrix::shell(comm, u.local_len())?;
+    let strategy = Box::new(Condensed::new(interface, backing, &u, &held, scene.solver.tolerance)?);
+    Ok(Problem { strategy, tangent, u, phases: phases(scene), settings: settings(linear), mesh })
+}
+
+/// x, z of each face node, on rank 0.
+fn face_vector(comm: &SimpleCommunicator, mesh: &Mesh) -> Result<Vector> {
+    Vector::new(comm, if comm.rank() == 0 { 2 * mesh.face.unknown.len() } else { 0 })
+}
+
+/// The compliance of the face, by this rank alone.
+fn compliance(scene: &Scene, solid: &Solid) -> Result<Compliance> {
+    match periodic_column(scene, solid) {
+        Some(column) => Ok(Compliance::of_periodic_columns(&column.stiffness(&[1.0]), column.columns)),
+        None => Compliance::by_schur_complement(&Body::new(SimpleCommunicator::self_comm(), solid.clone())?),
+    }
+}
+
+/// The whole body with its memory, on this rank alone.
+fn whole_body(solid: &Solid, materials: &Materials) -> Result<(Bulk, Body)> {
+    let body = Body::new(SimpleCommunicator::self_comm(), solid.clone())?;
+    let bulk = materials.bulk(&body, &body.vector()?)?;
+    Ok((bulk, body))
+}
+
+/// One column of a periodic layer; none for any other body.
+fn periodic_column(scene: &Scene, solid: &Solid) -> Option<PeriodicColumn> {
+    let layer = scene.layer().filter(|layer| layer.sides == scene::Sides::Periodic)?;
+    Some(PeriodicColumn::new(solid, layer.cells))
+}
+
+fn settings(linear: Linear) -> Settings {
+    let Limits { max_newton, max_cuts } = Limits::default();
+    Settings { linear, max_newton, max_cuts }
 }
 
 /// Under periodic sides every profile repeats with the layer's period.

@@ -13,6 +13,7 @@ pub mod oracle;
 pub mod output;
 pub mod parallel;
 pub mod petsc;
+pub mod plot;
 pub mod profile;
 pub mod rheology;
 pub mod scene;

@@ -1,5 +1,7 @@
 //! The file against CONTRACT.md: names, shapes, types, attributes, and what is refused.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[allow(dead_code)]
 mod common;
 
 use std::path::Path;

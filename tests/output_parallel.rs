@@ -1,5 +1,7 @@
 //! Bulk fields, written by 1 to 4 ranks into the same file.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[allow(dead_code)]
 mod common;
 
 use std::path::Path;
@@ -9,13 +11,16 @@ use common::sample;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, CommunicatorCollectives};
 use mpjr::output::bulk::{self, Frame};
-use mpjr::output::{HistoryRow, Recorder, Status, reader::Results};
+use mpjr::output::{HistoryRow, Plan, Recorder, Status, reader::Results};
+
+const CASES: &[Case] = &[
+    Case::new("frames_do_not_depend_on_ranks", &[1, 2, 3, 4], frames_do_not_depend_on_ranks),
+    Case::new("errors_reach_every_rank", &[1, 2, 3], errors_reach_every_rank),
+    Case { disk: Some(3 << 20), ..Case::new("a_full_disk_loses_no_frame", &[1, 2, 4], a_full_disk_loses_no_frame) },
+];
 
 fn main() {
-    common::mpi::main(&[
-        Case { name: "frames_do_not_depend_on_ranks", ranks: &[1, 2, 3, 4], body: frames_do_not_depend_on_ranks },
-        Case { name: "errors_reach_every_rank", ranks: &[1, 2, 3], body: errors_reach_every_rank },
-    ]);
+    common::mpi::main(CASES);
 }
 
 fn displacement(frame: usize, node: usize) -> [f64; 2] {
@@ -43,9 +48,13 @@ fn write(
     bulk::write(world, recorder, &Frame { time: frame as f64, nodes, displacement: &displacement, stress: &stress })
 }
 
+/// A mesh large enough that two ranks or more write it.
+fn plan(frames: usize) -> Plan {
+    Plan { bulk: Some(sample::mesh(150, 100, frames)), ..sample::plan(4, 0) }
+}
+
 fn create(world: &SimpleCommunicator, path: &Path, frames: usize) -> Option<Recorder> {
-    let create =
-        || Recorder::create(path, &sample::metadata(), sample::plan(4, frames), &HistoryRow::default()).unwrap();
+    let create = || Recorder::create(path, &sample::metadata(), plan(frames), &HistoryRow::default()).unwrap();
     (world.rank() == 0).then(create)
 }
 
@@ -53,7 +62,7 @@ fn create(world: &SimpleCommunicator, path: &Path, frames: usize) -> Option<Reco
 fn frames_do_not_depend_on_ranks(world: &SimpleCommunicator, directory: &Path) {
     let path = directory.join("run.h5");
     let recorder = create(world, &path, 2);
-    let nodes = sample::plan(4, 2).bulk.unwrap().coordinates.len();
+    let nodes = plan(2).bulk.unwrap().coordinates.len();
     let mine = part(world.rank() as usize, world.size() as usize, nodes);
     for frame in 0..3 {
         if let Some(recorder) = &recorder {
@@ -94,7 +103,7 @@ fn errors_reach_every_rank(world: &SimpleCommunicator, directory: &Path) {
     let path = directory.join("run.h5");
     let recorder = create(world, &path, 2);
     let (rank, ranks) = (world.rank() as usize, world.size() as usize);
-    let nodes = sample::plan(4, 2).bulk.unwrap().coordinates.len();
+    let nodes = plan(2).bulk.unwrap().coordinates.len();
     let complete = part(rank, ranks, nodes);
 
     let mut outside = complete.clone();
@@ -102,7 +111,7 @@ fn errors_reach_every_rank(world: &SimpleCommunicator, directory: &Path) {
         outside.push(nodes);
     }
     let message = write(world, recorder.as_ref(), 0, &outside).unwrap_err().to_string();
-    assert!(message.contains("node 35 of 35"), "{message}");
+    assert!(message.contains(&format!("node {nodes} of {nodes}")), "{message}");
 
     let missing: Vec<usize> = complete.iter().copied().filter(|&node| node != 7).collect();
     let message = write(world, recorder.as_ref(), 0, &missing).unwrap_err().to_string();
@@ -116,4 +125,41 @@ fn errors_reach_every_rank(world: &SimpleCommunicator, directory: &Path) {
     world.barrier();
     let error = write(world, recorder.as_ref(), 1, &complete).unwrap_err();
     assert_eq!(error.exit_code(), 4);
+}
+
+/// Frames until the disk is full: the error is the same on all ranks, what was told to be written is there, and a new
+/// file is refused without a trace.
+fn a_full_disk_loses_no_frame(world: &SimpleCommunicator, directory: &Path) {
+    let path = directory.join("run.h5");
+    let recorder = create(world, &path, 10);
+    let nodes = plan(10).bulk.unwrap().coordinates.len();
+    let mine = part(world.rank() as usize, world.size() as usize, nodes);
+    let (written, error) = (0..10)
+        .find_map(|frame| write(world, recorder.as_ref(), frame, &mine).err().map(|error| (frame, error)))
+        .expect("ten frames do not fit");
+    assert_eq!(error.exit_code(), 4);
+    assert!(error.to_string().contains("No space left") && error.to_string().contains("--out"), "{error}");
+    world.barrier();
+    if let Some(recorder) = recorder {
+        // Rows need no new block here, or fail the same way.
+        let _ = recorder.history(sample::row(1)).and_then(|()| recorder.flush());
+        let results = Results::open(&path).unwrap();
+        assert!(written > 0);
+        let (u, s) = (results.bulk("displacement").unwrap(), results.bulk("stress").unwrap());
+        assert_eq!((u.rows, s.rows), (written, written));
+        for frame in 0..written {
+            assert!(u.row(frame).iter().copied().eq((0..nodes).flat_map(|node| displacement(frame, node))));
+            assert!(s.row(frame).iter().copied().eq((0..nodes).flat_map(|node| stress(frame, node))));
+        }
+        // Fill the last blocks.
+        let _ = std::fs::write(directory.join("rest"), vec![1; 3 << 20]);
+        let other = directory.join("other.h5");
+        let error = Recorder::create(&other, &sample::metadata(), plan(1), &HistoryRow::default()).unwrap_err();
+        assert_eq!(error.exit_code(), 4);
+        assert!(error.to_string().ends_with("No space left on device"), "{error}");
+        let mut left: Vec<_> = std::fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        left.sort();
+        assert_eq!(left, ["rest", "run.h5", "run.xdmf"]);
+    }
+    world.barrier();
 }

@@ -1,6 +1,7 @@
 //! The commands of `mpjr`, one module each.
 
 mod check;
+mod fit;
 mod progress;
 mod record;
 mod run;
@@ -26,6 +27,8 @@ enum Command {
     Run(run::RunArguments),
     /// Read and check a scene, and say what a run would do; solves nothing
     Check(check::CheckArguments),
+    /// Identify a Prony series from measured data or from the fractional power law
+    Fit(fit::FitArgs),
 }
 
 /// Reads the command line, does what it says, and returns the exit code: 0 done, 2 scene or command line wrong,
@@ -44,6 +47,14 @@ pub fn main() -> i32 {
     let outcome: Result<()> = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
+        // It needs no solver, so that one process does it for all.
+        Command::Fit(arguments) => {
+            if is_first_process() {
+                fit::run(&arguments)
+            } else {
+                Ok(())
+            }
+        }
     };
     match outcome {
         Ok(()) => 0,

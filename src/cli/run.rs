@@ -122,7 +122,9 @@ fn solve(session: &Session, world: &SimpleCommunicator, arguments: &RunArguments
 
 /// The scene's stem + `.h5` in the current directory.
 fn default_output(scene: &Path) -> PathBuf {
-    PathBuf::from(scene.file_stem().unwrap_or_default()).with_added_extension("h5")
+    let mut name = scene.file_stem().unwrap_or_default().to_owned();
+    name.push(".h5");
+    PathBuf::from(name)
 }
 
 /// Interface profiles to expect.

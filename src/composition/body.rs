@@ -132,17 +132,18 @@ pub fn quadrilateral(scene: &Scene) -> Quadrilateral {
 
 /// The materials as the bulk sees them: one part for each way of relaxing, whatever modulus and region relax so.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Solid {
+pub struct Materials {
     /// What each region is made of.
     pub regions: Vec<Region>,
     /// The relaxation times of all arms, s.
     pub times: Vec<f64>,
     /// How each part relaxes; none = elastic.
-    series: Vec<Option<Series>>,
-    memory: Memory,
+    pub series: Vec<Option<Series>>,
+    /// How the arms are updated.
+    pub memory: Memory,
 }
 
-impl Solid {
+impl Materials {
     /// Of the scene's materials.
     pub fn new(scene: &Scene) -> Self {
         let mut times: Vec<f64> = Vec::new();
@@ -171,6 +172,11 @@ impl Solid {
             _ => Memory::Exponential,
         };
         Self { regions, times, series, memory }
+    }
+
+    /// Whether all moduli of all regions relax in one way, so that the interior follows the face for all time.
+    pub fn relax_alike(&self) -> bool {
+        self.series.len() == 1
     }
 
     /// The body at rest. The first part carries the diagonal of the held unknowns.

@@ -1,7 +1,13 @@
-//! Bulk fields, written collectively: values go to the rank that holds their block of nodes, and each rank writes its
-//! block. The order of nodes in the file is that of the mesh, whatever the number of ranks.
+//! Bulk fields, written collectively in two phases: values go to the rank that holds their block of nodes, then the
+//! ranks write their blocks, all at once. The order of nodes in the file is that of the mesh, whatever the number of
+//! ranks.
+//!
+//! The second phase is a positioned write and not `MPI_File_write_at_all` (which a collective `H5Dwrite` ends in): on
+//! a full disk Open MPI 4.1 reports success and a full count to three ranks or more while data are lost. Here every
+//! rank sees what became of its own write.
 
 use std::ffi::OsStr;
+use std::fs::OpenOptions;
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
@@ -12,17 +18,19 @@ use mpi::datatype::{Partition, PartitionMut};
 use mpi::traits::{Communicator, CommunicatorCollectives, Equivalence};
 
 use super::columns::BULK;
-use super::recorder::State;
-use super::store::Table;
+use super::recorder::{State, bytes};
+use super::store::{Table, failed};
 use super::{Recorder, xdmf};
 use crate::error::{Error, Result};
 use crate::parallel::{agree, broadcast};
-use crate::petsc::collective_write::SharedFile;
 
 /// Numbers per node: displacement x, z; stress xx, zz, yy, xz.
 const PER_NODE: usize = 6;
 /// How many of them are displacement.
 const DISPLACEMENT: usize = 2;
+
+/// A rank writes at least so many bytes, or nothing: many small writes to one file get in each other's way.
+const LEAST_BYTES: usize = 1 << 18;
 
 /// One rank's part of the fields. Each node of the mesh must be given by at least one rank; where several ranks give
 /// it, one of them counts.
@@ -56,7 +64,8 @@ where
     let target = announce(comm, held.as_mut())?;
     let block = agree(comm, check(frame, target.nodes)).map(|()| redistribute(comm, frame, target.nodes))?;
     let block = agree(comm, block)?;
-    write_block(comm, &target, &block)?;
+    let written = write_block(&target, &block).map_err(|error| failed(&target.path, error));
+    agree(comm, written)?;
     agree(comm, held.as_mut().map_or(Ok(()), |state| commit(state, frame.time)))
 }
 
@@ -109,11 +118,40 @@ fn check(frame: &Frame, nodes: usize) -> Result<()> {
     }
 }
 
-/// The nodes that a rank writes: whole blocks of equal length, the last ones shorter or empty.
+/// The nodes that one rank writes.
 struct Block {
     first: usize,
     displacement: Vec<f64>,
     stress: Vec<f64>,
+}
+
+/// How nodes are dealt out to the ranks that write: blocks of `length` nodes, one on every `stride`-th rank.
+#[derive(Debug, Clone, Copy)]
+struct Blocks {
+    nodes: usize,
+    length: usize,
+    stride: usize,
+}
+
+impl Blocks {
+    fn new(nodes: usize, ranks: usize) -> Self {
+        let writers = (nodes * PER_NODE * size_of::<f64>() / LEAST_BYTES).clamp(1, ranks);
+        Self { nodes, length: nodes.div_ceil(writers).max(1), stride: ranks / writers }
+    }
+
+    /// The rank that writes a node.
+    fn writer(self, node: usize) -> usize {
+        node / self.length * self.stride
+    }
+
+    /// The nodes that a rank writes.
+    fn of(self, rank: usize) -> std::ops::Range<usize> {
+        if !rank.is_multiple_of(self.stride) {
+            return 0..0;
+        }
+        let first = (rank / self.stride * self.length).min(self.nodes);
+        first..(first + self.length).min(self.nodes)
+    }
 }
 
 /// Sends every value to the rank that writes it.
@@ -122,14 +160,14 @@ where
     C: Communicator + CommunicatorCollectives,
 {
     let (rank, ranks) = (comm.rank() as usize, comm.size() as usize);
-    let length = nodes.div_ceil(ranks).max(1);
+    let blocks = Blocks::new(nodes, ranks);
     let mut order: Vec<usize> = (0..frame.nodes.len()).collect();
     order.sort_by_key(|&local| frame.nodes[local]);
     let mut counts = vec![0; ranks];
     let mut indices = Vec::with_capacity(order.len());
     let mut values = Vec::with_capacity(order.len() * PER_NODE);
     for local in order {
-        counts[frame.nodes[local] / length] += 1;
+        counts[blocks.writer(frame.nodes[local])] += 1;
         indices.push(frame.nodes[local] as u64);
         values.extend_from_slice(&frame.displacement[local]);
         values.extend_from_slice(&frame.stress[local]);
@@ -139,8 +177,8 @@ where
     let indices = exchange(comm, &indices, &counts, &incoming, 1);
     let values = exchange(comm, &values, &counts, &incoming, PER_NODE);
 
-    let first = (rank * length).min(nodes);
-    let mine = (first + length).min(nodes) - first;
+    let std::ops::Range { start: first, end } = blocks.of(rank);
+    let mine = end - first;
     let mut block =
         Block { first, displacement: vec![f64::NAN; mine * DISPLACEMENT], stress: vec![f64::NAN; mine * 4] };
     let mut seen = vec![false; mine];
@@ -175,27 +213,18 @@ where
     received
 }
 
-/// The collective write proper.
-fn write_block<C>(comm: &C, target: &Target, block: &Block) -> Result<()>
-where
-    C: Communicator + CommunicatorCollectives,
-{
-    let failed =
-        |reason| Error::file(&target.path, format!("bulk fields: {reason}; the rows up to the last write are kept"));
-    let opened = SharedFile::open(comm, &target.path);
-    if let Err(error) = agree(comm, opened.as_ref().map(|_| ()).map_err(|reason| failed(reason.clone()))) {
-        // Closing is collective and would wait for the ranks that have nothing to close.
-        std::mem::forget(opened);
-        return Err(error);
+/// Writes one rank's part.
+fn write_block(target: &Target, block: &Block) -> std::io::Result<()> {
+    if block.stress.is_empty() {
+        return Ok(());
     }
-    let file = opened.map_err(failed)?;
-    let mut outcome = Ok(());
+    let file = OpenOptions::new().write(true).open(&target.path)?;
     for ((field, values), start) in BULK.iter().zip([&block.displacement, &block.stress]).zip(target.at) {
         let offset = start + (block.first * field.components.len() * size_of::<f64>()) as u64;
-        // Every rank takes part in every write, also after an error.
-        outcome = outcome.and(file.write_at_all(offset, values));
+        file.write_all_at(&bytes(values), offset)?;
     }
-    agree(comm, outcome.and(file.close()).map_err(failed))
+    // Network file systems tell only now what became of the data.
+    file.sync_data()
 }
 
 /// Makes the frame visible.
@@ -203,7 +232,7 @@ fn commit(state: &mut State, time: f64) -> Result<()> {
     let store = &mut state.store;
     let file = store.open()?;
     let at = store.row_at(Table::Bulk, BULK.len(), store.rows(Table::Bulk))?;
-    file.write_all_at(&time.to_ne_bytes(), at).map_err(|error| store.failed(error))?;
+    file.write_all_at(&time.to_ne_bytes(), at).map_err(|error| failed(store.path(), error))?;
     store.commit(&file, &[(Table::Bulk, 1)])?;
     state.bulk_times.push(time);
     state.mesh.map_or(Ok(()), |mesh| xdmf::write(state.store.path(), &state.version, mesh, &state.bulk_times))

@@ -5,7 +5,7 @@
 //! A run may be killed while it writes, and the file must still open. The HDF5 library gives no such promise: its
 //! flush is a series of writes, and between two of them the file can refer to what is not there yet. So the library
 //! only makes the file, under another name: every dataset at its planned number of rows, in one chunk, with its room
-//! set aside but not filled ([`skeleton`]). Then the number of rows is set to what is really there (one row of the
+//! set aside but not filled (`skeleton.rs`). Then the number of rows is set to what is really there (one row of the
 //! history), and the file is renamed to its place.
 //!
 //! After that the library is not used any more. Adding rows is (1) writing numbers into room that no extent covers
@@ -13,6 +13,9 @@
 //! has a block of its own. The system takes pages whole, so that each extent is old or new, never a mixture, and the
 //! rows it uncovers are there. Between two pages of that write a kill can leave one dataset ahead of another by the
 //! rows of one flush; `time` is the last of its group, so that every row it counts is complete.
+//!
+//! Bulk fields follow the same rule: all ranks write their numbers, agree that all went well, and then one rank makes
+//! the frame visible.
 //!
 //! The file is at all times one that the library itself could have written. No handle stays open and no lock is
 //! held, so it can be read while the run goes on.
@@ -106,4 +109,11 @@ pub struct BulkPlan {
     pub coordinates: Vec<[f64; 2]>,
     /// The four nodes of each cell, counter-clockwise, from 0.
     pub cells: Vec<[i64; 4]>,
+}
+
+/// The HDF5 library's error in one line, without its stack: the system's words where it quotes them.
+fn plain(error: &hdf5::Error) -> String {
+    let text = error.to_string();
+    let quoted = text.split("error message = '").nth(1).and_then(|rest| rest.split('\'').next());
+    quoted.or_else(|| text.lines().next()).unwrap_or_default().to_owned()
 }

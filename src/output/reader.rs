@@ -41,8 +41,9 @@ impl Results {
     pub fn open(path: &Path) -> Result<Self> {
         // The system's words on a file that is missing or may not be read are plainer than the library's.
         std::fs::File::open(path).map_err(|error| Error::file(path, error))?;
-        let file = hdf5::File::open(path)
-            .map_err(|error| Error::file(path, format!("is not an HDF5 file that can be read ({error})")))?;
+        let file = hdf5::File::open(path).map_err(|error| {
+            Error::file(path, format!("is not an HDF5 file that can be read ({})", super::plain(&error)))
+        })?;
         if file.attr("mpjr_version").is_err() {
             return Err(Error::file(path, "is an HDF5 file, but not one that mpjr wrote"));
         }
@@ -115,6 +116,6 @@ impl Results {
     }
 
     fn missing(&self, what: &str, error: &hdf5::Error) -> Error {
-        Error::file(&self.path, format!("has no {what} that can be read ({error})"))
+        Error::file(&self.path, format!("has no {what} that can be read ({})", super::plain(error)))
     }
 }

@@ -7,7 +7,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime};
 
 use super::columns::{self, INTERFACE, Value};
-use super::store::{Store, Table};
+use super::store::{Store, Table, failed};
 use super::xdmf::MeshSize;
 use super::{HistoryRow, InterfaceFrame, Metadata, Plan, Status, skeleton, xdmf};
 use crate::error::{Error, Result};
@@ -109,7 +109,7 @@ impl Recorder {
         let file = state.store.open()?;
         state.store.set_status(&file, status)?;
         // Some file systems tell only now that the disk is full.
-        file.sync_all().map_err(|error| state.store.failed(error))
+        file.sync_all().map_err(|error| failed(state.store.path(), error))
     }
 
     /// The state, for the bulk fields; no row is written while the guard lives.
@@ -198,7 +198,7 @@ impl State {
 }
 
 /// The numbers as the file has them.
-fn bytes(values: &[f64]) -> Vec<u8> {
+pub(super) fn bytes(values: &[f64]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_ne_bytes()).collect()
 }
 
@@ -244,9 +244,10 @@ fn about(path: &Path, error: Error) -> Error {
     }
 }
 
-/// The absolute form of a path whose directory exists.
+/// The absolute form of a path whose directory exists; a link to a file is followed.
 fn absolute(path: &Path) -> Result<PathBuf> {
     let path = std::path::absolute(path).map_err(|error| Error::file(path, error))?;
+    let path = path.canonicalize().unwrap_or(path);
     let directory = path.parent().ok_or_else(|| Error::file(&path, "names no file"))?;
     match std::fs::metadata(directory) {
         Ok(about) if about.is_dir() => {}

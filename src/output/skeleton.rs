@@ -23,7 +23,8 @@ type Described = Vec<(Dataset, &'static str, &'static str)>;
 
 /// Creates the file at `path`, which must not exist, with all extents at the planned number of rows and no row in it.
 pub(super) fn create(path: &Path, metadata: &Metadata, plan: &Plan) -> Result<()> {
-    write(path, metadata, plan).map_err(|error| Error::file(path, error))
+    write(path, metadata, plan)
+        .map_err(|error| Error::file(path, format!("cannot be created: {}", super::plain(&error))))
 }
 
 fn write(path: &Path, metadata: &Metadata, plan: &Plan) -> hdf5::Result<()> {

@@ -69,16 +69,18 @@ impl Store {
     }
 
     fn find(path: &Path, tables: &[Vec<String>]) -> Result<Self> {
-        let library = hdf5::File::open(path).map_err(|error| Error::file(path, error))?;
-        let root = object_address(&library).map_err(|error| Error::file(path, error))?;
+        let library = hdf5::File::open(path).map_err(|error| Error::file(path, super::plain(&error)))?;
+        let root = object_address(&library).map_err(|error| Error::file(path, super::plain(&error)))?;
         let raw = File::open(path).map_err(|error| Error::file(path, error))?;
         let mut found = [const { (Vec::new(), 0) }; 3];
         for (table, names) in found.iter_mut().zip(tables) {
             for name in names {
-                table.0.push(Series::find(&library, &raw, name).map_err(|error| Error::file(path, error))?);
+                table
+                    .0
+                    .push(Series::find(&library, &raw, name).map_err(|error| Error::file(path, super::plain(&error)))?);
             }
         }
-        library.close().map_err(|error| Error::file(path, error))?;
+        library.close().map_err(|error| Error::file(path, super::plain(&error)))?;
         Self::from_raw(path, &raw, found, root).map_err(|error| Error::file(path, error))
     }
 
@@ -153,7 +155,7 @@ impl Store {
                 return Err(Error::Internal(format!("a row of {name} with {given} numbers instead of {needed}")));
             }
             let at = self.row_at(table, index, rows + ahead)?;
-            file.write_all_at(bytes, at).map_err(|error| self.failed(error))?;
+            file.write_all_at(bytes, at).map_err(|error| failed(&self.path, error))?;
         }
         Ok(())
     }
@@ -168,7 +170,7 @@ impl Store {
                 extents[at..at + 8].copy_from_slice(&((rows + count) as u64).to_le_bytes());
             }
         }
-        file.write_all_at(&extents, self.extents.0).map_err(|error| self.failed(error))?;
+        file.write_all_at(&extents, self.extents.0).map_err(|error| failed(&self.path, error))?;
         self.extents.1 = extents;
         for &(table, count) in added {
             self.tables[table as usize].1 += count;
@@ -183,14 +185,14 @@ impl Store {
 
     /// Sets the attribute `wall_seconds`.
     pub(super) fn set_wall_seconds(&self, file: &File, seconds: f64) -> Result<()> {
-        file.write_all_at(&seconds.to_ne_bytes(), self.wall_seconds_at).map_err(|error| self.failed(error))
+        file.write_all_at(&seconds.to_ne_bytes(), self.wall_seconds_at).map_err(|error| failed(&self.path, error))
     }
 
     /// Sets the attribute `status`.
     pub(super) fn set_status(&self, file: &File, status: Status) -> Result<()> {
         let reference = Status::ALL.iter().position(|&other| other == status).and_then(|at| self.status_values.get(at));
         let reference = reference.ok_or_else(|| Error::Internal("status_values is not what was written".into()))?;
-        file.write_all_at(reference, self.status_at).map_err(|error| self.failed(error))
+        file.write_all_at(reference, self.status_at).map_err(|error| failed(&self.path, error))
     }
 
     /// The same file with room for twice the rows of `table`, which must be full. The file is copied, extended by the
@@ -208,7 +210,7 @@ impl Store {
     fn extended_copy(&self, table: Table, scratch: &Path) -> Result<Self> {
         // Checks that the file at the path is ours before its copy takes that place.
         drop(self.open()?);
-        std::fs::copy(&self.path, scratch).map_err(|error| self.failed(error))?;
+        std::fs::copy(&self.path, scratch).map_err(|error| failed(&self.path, error))?;
         let capacity = self.capacity(table);
         let extend = || -> hdf5::Result<()> {
             let file = hdf5::File::with_options().with_fapl(|access| access.libver_earliest()).open_rw(scratch)?;
@@ -222,7 +224,9 @@ impl Store {
             }
             file.close()
         };
-        extend().map_err(|error| Error::file(&self.path, format!("cannot make room for more rows: {error}")))?;
+        extend().map_err(|error| {
+            Error::file(&self.path, format!("cannot make room for more rows: {}", super::plain(&error)))
+        })?;
 
         let names = self.tables.iter().map(|(series, _)| series.iter().map(|s| s.name.clone()).collect());
         let mut grown = Self::find(scratch, &names.collect::<Vec<_>>())?;
@@ -230,21 +234,21 @@ impl Store {
             new.1 = old.1;
         }
         grown.show_committed_only(&grown.open()?)?;
-        std::fs::rename(scratch, &self.path).map_err(|error| self.failed(error))?;
+        std::fs::rename(scratch, &self.path).map_err(|error| failed(&self.path, error))?;
         grown.moved_to(&self.path);
         Ok(grown)
     }
+}
 
-    /// What the system said about a write, with what to do about it.
-    pub(super) fn failed(&self, error: io::Error) -> Error {
-        let remedy = match error.kind() {
-            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-                "; free some space or name a file elsewhere with --out. The rows up to the last write are kept"
-            }
-            _ => "; the rows up to the last write are kept",
-        };
-        Error::file(&self.path, format!("{error}{remedy}"))
-    }
+/// What the system said about a write to the result file, with what to do about it.
+pub(super) fn failed(path: &Path, error: io::Error) -> Error {
+    let remedy = match error.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "; free some space or choose another place with --out"
+        }
+        _ => "",
+    };
+    Error::file(path, format!("{error}{remedy}. What was written before is kept"))
 }
 
 impl Series {

@@ -52,9 +52,13 @@ pub(super) fn write(results: &Path, version: &str, mesh: MeshSize, times: &[f64]
     let path = beside(results);
     let scratch = super::recorder::scratch(&path);
     let name = results.file_name().unwrap_or_default().to_string_lossy();
-    let outcome = std::fs::write(&scratch, text(&escape(&name), version, mesh, times))
-        .and_then(|()| std::fs::rename(&scratch, &path));
-    outcome.map_err(|error| Error::file(&path, error))
+    let document = text(&escape(&name), version, mesh, times);
+    let outcome = std::fs::write(&scratch, document).and_then(|()| std::fs::rename(&scratch, &path));
+    if outcome.is_err() {
+        // The error at hand says more than one about a leftover.
+        let _ = std::fs::remove_file(&scratch);
+    }
+    outcome.map_err(|error| super::store::failed(&path, error))
 }
 
 /// The document. x and z of the layer are ParaView's X and Y; the displacement gets a zero third component, the

@@ -42,6 +42,18 @@ impl Matrix {
         }
     }
 
+    /// A matrix known by what it does: the tangent of an [`Implicit`](super::Implicit) problem that multiplies by
+    /// itself, with `local` rows on this rank.
+    pub fn shell(comm: &impl AsCommunicator, local: usize) -> Result<Self> {
+        let (mut raw, local) = (null_mut(), local as ffi::PetscInt);
+        // SAFETY: a live communicator and a place for the handle; the context is set before the first use.
+        unsafe {
+            let comm = comm.as_communicator().as_raw();
+            check(ffi::MatCreateShell(comm, local, local, -1, -1, null_mut(), &mut raw))?;
+        }
+        Ok(Self { raw })
+    }
+
     /// A view of a matrix that PETSc owns; never destroyed from here.
     pub(super) fn borrow(raw: ffi::Mat) -> ManuallyDrop<Self> {
         ManuallyDrop::new(Self { raw })

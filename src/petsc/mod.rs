@@ -1,11 +1,11 @@
-//! Thin safe wrappers of PETSc, and of two calls of HDF5: the only `unsafe` of the crate.
+//! Thin safe wrappers of PETSc, and of one call of HDF5: the only `unsafe` of the crate.
 //!
 //! A handle owns its object and destroys it when dropped; every code is checked; what PETSc says of a failure becomes
 //! the text of an [`Error`](crate::error::Error). Everything here is collective over the communicator of its objects
 //! unless it says otherwise.
 
-pub mod collective_write;
 mod error;
+mod factor;
 mod ffi;
 mod matrix;
 pub mod object_address;
@@ -14,8 +14,9 @@ mod session;
 mod transient;
 mod vector;
 
+pub use factor::{Cholesky, DenseLu};
 pub use matrix::{Matrix, Pattern};
 pub use partition::partition;
 pub use session::{Session, blas_library, peak_memory};
-pub use transient::{Accepted, Implicit, Integrator, Next, Settings, Step, Verdict};
+pub use transient::{Accepted, Implicit, Integrator, Linear, Next, Settings, Step, Verdict};
 pub use vector::{Gather, Vector};

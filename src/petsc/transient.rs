@@ -67,17 +67,38 @@ pub trait Implicit {
     fn residual(&mut self, step: Step, u: &Vector, rate: &Vector, f: &mut Vector) -> Result<()>;
     /// jacobian = dF/du + (1/dt) dF/d(rate).
     fn jacobian(&mut self, step: Step, u: &Vector, rate: &Vector, jacobian: &mut Matrix) -> Result<()>;
+    /// product = tangent v, with the last tangent; for [`Linear::Own`].
+    fn multiply(&mut self, _v: &Vector, _product: &mut Vector) -> Result<()> {
+        Err(Error::Internal("the tangent of this problem is a matrix".into()))
+    }
+    /// x = tangent^-1 b, or nearly so, with the last tangent; for [`Linear::Own`].
+    fn solve(&mut self, _b: &Vector, _x: &mut Vector) -> Result<()> {
+        Err(Error::Internal("the tangent of this problem is a matrix".into()))
+    }
     /// Judges the Newton iterate whose residual norm is `norm`.
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
     /// Takes note of an accepted step that ends at `u`.
     fn accepted(&mut self, accepted: Accepted, u: &Vector) -> Result<Next>;
 }
 
+/// How the linear systems are solved, unless PETSc options say otherwise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Linear {
+    /// The tangent is symmetric positive definite: Cholesky factorisation by MUMPS.
+    Cholesky,
+    /// LU factorisation by MUMPS.
+    Lu,
+    /// By the problem itself, exactly.
+    Own,
+    /// By GMRES, with the problem's own solve as preconditioner.
+    OwnIterative,
+}
+
 /// How the nonlinear system is solved, unless PETSc options say otherwise.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings {
-    /// The tangent is symmetric positive definite: factorise by Cholesky, else by LU.
-    pub symmetric: bool,
+    /// How the linear systems are solved.
+    pub linear: Linear,
     /// Newton iterations per attempt before the step is cut.
     pub max_newton: usize,
     /// How often a step may be cut (by four each time) before the solve fails.
@@ -87,6 +108,8 @@ pub struct Settings {
 /// A TS with its SNES, KSP and PC.
 pub struct Integrator {
     ts: ffi::TS,
+    /// The problem multiplies and solves by its own tangent.
+    own: bool,
 }
 
 /// What the callbacks reach through PETSc's context pointer.
@@ -101,11 +124,12 @@ impl Integrator {
     /// Backward Euler with Newton's method and a direct solver (MUMPS), changed by whatever PETSc options are set.
     pub fn new(comm: &impl AsCommunicator, settings: Settings) -> Result<Self> {
         let mut ts = null_mut();
+        let own = matches!(settings.linear, Linear::Own | Linear::OwnIterative);
         let (mut snes, mut search, mut ksp, mut pc) = (null_mut(), null_mut(), null_mut(), null_mut());
         // SAFETY: places for the handles; those got from TS stay TS's own.
         unsafe {
             check(ffi::TSCreate(comm.as_communicator().as_raw(), &mut ts))?;
-            let integrator = Self { ts };
+            let integrator = Self { ts, own };
             check(ffi::TSSetProblemType(ts, ffi::TSProblemType_TS_NONLINEAR))?;
             check(ffi::TSSetType(ts, c"beuler".as_ptr()))?;
             check(ffi::TSSetExactFinalTime(ts, ffi::TSExactFinalTimeOption_TS_EXACTFINALTIME_STEPOVER))?;
@@ -121,10 +145,19 @@ impl Integrator {
             check(ffi::SNESGetLineSearch(snes, &mut search))?;
             check(ffi::SNESLineSearchSetType(search, c"bt".as_ptr()))?;
             check(ffi::SNESGetKSP(snes, &mut ksp))?;
-            check(ffi::KSPSetType(ksp, c"preonly".as_ptr()))?;
             check(ffi::KSPGetPC(ksp, &mut pc))?;
-            check(ffi::PCSetType(pc, if settings.symmetric { c"cholesky".as_ptr() } else { c"lu".as_ptr() }))?;
-            check(ffi::PCFactorSetMatSolverType(pc, c"mumps".as_ptr()))?;
+            let (method, preconditioner) = match settings.linear {
+                Linear::Cholesky => (c"preonly", c"cholesky"),
+                Linear::Lu => (c"preonly", c"lu"),
+                Linear::Own => (c"preonly", c"shell"),
+                Linear::OwnIterative => (c"gmres", c"shell"),
+            };
+            check(ffi::KSPSetType(ksp, method.as_ptr()))?;
+            check(ffi::KSPSetTolerances(ksp, 1e-9, -2.0, -2.0, -2))?;
+            check(ffi::PCSetType(pc, preconditioner.as_ptr()))?;
+            if matches!(settings.linear, Linear::Cholesky | Linear::Lu) {
+                check(ffi::PCFactorSetMatSolverType(pc, c"mumps".as_ptr()))?;
+            }
             check(ffi::TSSetFromOptions(ts))?;
             Ok(integrator)
         }
@@ -154,6 +187,20 @@ impl Integrator {
             check(ffi::TSSetPostStep(ts, Some(post_step::<P>)))?;
             check(ffi::TSGetSNES(ts, &mut snes))?;
             check(ffi::SNESSetConvergenceTest(snes, Some(convergence::<P>), pointer, None))?;
+            if self.own {
+                let (mut ksp, mut pc) = (null_mut(), null_mut());
+                check(ffi::MatShellSetContext(jacobian.raw(), pointer))?;
+                let multiply: unsafe extern "C" fn(_, _, _) -> _ = multiply::<P>;
+                let operation = std::mem::transmute::<
+                    unsafe extern "C" fn(ffi::Mat, ffi::Vec, ffi::Vec) -> ffi::PetscErrorCode,
+                    unsafe extern "C" fn(),
+                >(multiply);
+                check(ffi::MatShellSetOperation(jacobian.raw(), ffi::MatOperation_MATOP_MULT, Some(operation)))?;
+                check(ffi::SNESGetKSP(snes, &mut ksp))?;
+                check(ffi::KSPGetPC(ksp, &mut pc))?;
+                check(ffi::PCShellSetContext(pc, pointer))?;
+                check(ffi::PCShellSetApply(pc, Some(solve::<P>)))?;
+            }
             check(ffi::TSSetTime(ts, start.t - start.dt))?;
             check(ffi::TSSetTimeStep(ts, start.dt))?;
             let code = ffi::TSSolve(ts, u.raw());
@@ -254,6 +301,24 @@ unsafe extern "C" fn tangent<P: Implicit>(
             let mut matrix = Matrix::borrow(matrix);
             context.problem.jacobian(step, &Vector::borrow(u), &Vector::borrow(rate), &mut matrix)
         })
+    }
+}
+
+unsafe extern "C" fn multiply<P: Implicit>(matrix: ffi::Mat, v: ffi::Vec, product: ffi::Vec) -> ffi::PetscErrorCode {
+    let mut pointer: *mut c_void = null_mut();
+    // SAFETY: as for `residual`; the shell's context is that of `solve`.
+    unsafe {
+        ffi::MatShellGetContext(matrix, (&raw mut pointer).cast::<c_void>());
+        guarded::<P>(pointer, |context| context.problem.multiply(&Vector::borrow(v), &mut Vector::borrow(product)))
+    }
+}
+
+unsafe extern "C" fn solve<P: Implicit>(pc: ffi::PC, b: ffi::Vec, x: ffi::Vec) -> ffi::PetscErrorCode {
+    let mut pointer: *mut c_void = null_mut();
+    // SAFETY: as for `residual`; the preconditioner's context is that of `solve`.
+    unsafe {
+        ffi::PCShellGetContext(pc, (&raw mut pointer).cast::<c_void>());
+        guarded::<P>(pointer, |context| context.problem.solve(&Vector::borrow(b), &mut Vector::borrow(x)))
     }
 }
 

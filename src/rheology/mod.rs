@@ -1,7 +1,14 @@
 //! Linear viscoelasticity: pure laws, numbers in and numbers out.
 
+pub mod band;
+pub mod fit;
+pub mod fractional;
 pub mod memory;
 pub mod prony;
+pub mod shift;
 
+pub use band::Band;
+pub use fractional::Fractional;
 pub use memory::{Factors, Memory};
 pub use prony::{Arm, Prony};
+pub use shift::Shift;

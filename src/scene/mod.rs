@@ -277,6 +277,8 @@ pub enum Strategy {
     Auto,
     /// All unknowns.
     Monolithic,
+    /// The unknowns of the contact face.
+    Condensed,
 }
 
 /// What is written.

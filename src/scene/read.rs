@@ -281,14 +281,15 @@ fn friction(section: &Section) -> Result<Friction> {
 fn solver(section: Option<&Section>) -> Result<Solver> {
     const TOLERANCE: Quantity =
         Quantity { what: "a relative tolerance above 0 and below 1", accepts: |value| value > 0.0 && value < 1.0 };
-    const STRATEGIES: [(&str, Strategy); 2] = [("auto", Strategy::Auto), ("monolithic", Strategy::Monolithic)];
+    const STRATEGIES: [(&str, Strategy); 3] =
+        [("auto", Strategy::Auto), ("monolithic", Strategy::Monolithic), ("condensed", Strategy::Condensed)];
 
     let default = Solver { strategy: Strategy::Auto, tolerance: 1e-8 };
     let Some(section) = section else { return Ok(default) };
     section.later(&[("preset", "give tolerance")])?;
     section.only(&["strategy", "tolerance"])?;
     Ok(Solver {
-        strategy: section.optional_choice("strategy", &STRATEGIES, &["condensed"])?.unwrap_or(default.strategy),
+        strategy: section.optional_choice("strategy", &STRATEGIES, &[])?.unwrap_or(default.strategy),
         tolerance: section.optional_number("tolerance", TOLERANCE)?.unwrap_or(default.tolerance),
     })
 }

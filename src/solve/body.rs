@@ -1,10 +1,9 @@
 //! The body as a distributed mesh: its stiffness, and its fields for output.
 
 use mpi::topology::SimpleCommunicator;
-use nalgebra::{SVector, Vector2, Vector4};
+use nalgebra::{SVector, Vector4};
 
 use super::BulkFields;
-use crate::bulk::Bulk;
 use crate::element::plane::{Answer, Split};
 use crate::element::{Quadrilateral, bbar, quad4, tri3};
 use crate::error::Result;
@@ -31,14 +30,52 @@ pub struct Region {
     pub bulk_part: usize,
 }
 
-/// A mesh distributed over the ranks of a communicator.
+impl Region {
+    /// The moduli, each times the factor of its part.
+    pub fn relaxed(&self, factors: &[f64]) -> Moduli {
+        let Moduli { shear, bulk } = self.moduli;
+        Moduli { shear: shear * factors[self.shear_part], bulk: bulk * factors[self.bulk_part] }
+    }
+}
+
+/// A mesh and what it is made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solid {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// What its quadrilaterals are.
+    pub quadrilateral: Quadrilateral,
+    /// What its regions are made of.
+    pub regions: Vec<Region>,
+}
+
+impl Solid {
+    /// What stands on the diagonal of held rows: a modulus, Pa.
+    pub fn diagonal(&self) -> f64 {
+        self.regions[0].moduli.shear
+    }
+
+    /// What a cell is made of.
+    pub fn region(&self, cell: usize) -> Region {
+        self.regions[usize::from(self.mesh.regions[cell])]
+    }
+
+    /// The split stiffness of a quadrilateral.
+    pub fn quadrilateral(&self, corners: [u32; 4]) -> Split<8> {
+        let points = self.mesh.points(corners);
+        match self.quadrilateral {
+            Quadrilateral::Plain => quad4::stiffness(&points),
+            Quadrilateral::MeanDilatation => bbar::stiffness(&points),
+        }
+    }
+}
+
+/// A solid distributed over the ranks of a communicator.
 pub struct Body {
-    mesh: Mesh,
+    solid: Solid,
     numbering: Numbering,
     pattern: Pattern,
     comm: SimpleCommunicator,
-    quadrilateral: Quadrilateral,
-    regions: Vec<Region>,
     /// What output needs, made when first asked for.
     recovery: Option<Recovery>,
 }
@@ -53,21 +90,27 @@ struct Recovery {
 }
 
 impl Body {
-    /// Distributes the mesh; `regions` says what each of its regions is made of.
-    pub fn new(
-        comm: SimpleCommunicator,
-        mesh: Mesh,
-        quadrilateral: Quadrilateral,
-        regions: Vec<Region>,
-    ) -> Result<Self> {
-        let numbering = Numbering::new(&comm, &mesh)?;
-        let pattern = numbering.pattern(&mesh);
-        Ok(Self { mesh, numbering, pattern, comm, quadrilateral, regions, recovery: None })
+    /// Distributes the solid.
+    pub fn new(comm: SimpleCommunicator, solid: Solid) -> Result<Self> {
+        let numbering = Numbering::new(&comm, &solid.mesh)?;
+        let pattern = numbering.pattern(&solid.mesh);
+        Ok(Self { solid, numbering, pattern, comm, recovery: None })
     }
 
     /// The mesh.
     pub fn mesh(&self) -> &Mesh {
-        &self.mesh
+        &self.solid.mesh
+    }
+
+    /// The stiffness at the instantaneous moduli.
+    pub fn elastic(&self) -> Result<Matrix> {
+        let moduli: Vec<Moduli> = self.solid.regions.iter().map(|region| region.moduli).collect();
+        self.stiffness(&moduli, self.solid.diagonal())
+    }
+
+    /// What it is made of.
+    pub fn solid(&self) -> &Solid {
+        &self.solid
     }
 
     /// Who owns what.
@@ -86,16 +129,16 @@ impl Body {
     pub fn stiffness(&self, moduli: &[Moduli], diagonal: f64) -> Result<Matrix> {
         let mut matrix = Matrix::new(&self.comm, &self.pattern)?;
         for &cell in &self.numbering.cells {
-            let Moduli { shear, bulk } = moduli[usize::from(self.mesh.regions[cell])];
-            let global = |node: u32| self.numbering.global[self.mesh.unknown[node as usize] as usize];
+            let Moduli { shear, bulk } = moduli[usize::from(self.solid.mesh.regions[cell])];
+            let global = |node: u32| self.numbering.global[self.mesh().unknown[node as usize] as usize];
             // Column-major and symmetric, so row-major too.
-            match self.mesh.cells[cell] {
+            match self.solid.mesh.cells[cell] {
                 Cell::Triangle(corners) => {
-                    let stiffness = tri3::stiffness(&self.mesh.points(corners)).with(shear, bulk);
+                    let stiffness = tri3::stiffness(&self.solid.mesh.points(corners)).with(shear, bulk);
                     matrix.add_blocks(&corners.map(global), stiffness.as_slice())?;
                 }
                 Cell::Quadrilateral(corners) => {
-                    let stiffness = self.quadrilateral(&self.mesh.points(corners)).with(shear, bulk);
+                    let stiffness = self.solid.quadrilateral(corners).with(shear, bulk);
                     matrix.add_blocks(&corners.map(global), stiffness.as_slice())?;
                 }
             }
@@ -107,37 +150,44 @@ impl Body {
 
     /// The rigid-body modes' coordinates: x, z of each of this rank's nodes.
     pub fn coordinates(&self) -> Result<Vector> {
-        let mut place = vec![0; self.mesh.unknown_nodes()];
-        for (node, &unknown) in self.mesh.unknown.iter().enumerate().rev() {
+        let mut place = vec![0; self.solid.mesh.unknown_nodes()];
+        for (node, &unknown) in self.solid.mesh.unknown.iter().enumerate().rev() {
             place[unknown as usize] = node;
         }
         let mut vector = self.vector()?;
         for (entry, &unknown) in vector.view_mut()?.chunks_exact_mut(2).zip(&self.numbering.unknowns) {
-            entry.copy_from_slice(self.mesh.nodes[place[unknown as usize]].as_slice());
+            entry.copy_from_slice(self.solid.mesh.nodes[place[unknown as usize]].as_slice());
         }
         Ok(vector)
     }
 
+    /// The values of `y` at the corners of the cells around this rank's nodes, for [`Self::fields`].
+    pub fn around(&mut self, y: &Vector) -> Result<Vec<f64>> {
+        let recovery = self.recovery(y)?;
+        let mut values = vec![0.0; recovery.gathered];
+        recovery.gather.gather(y, &mut values)?;
+        Ok(values)
+    }
+
+    fn recovery(&mut self, layout: &Vector) -> Result<&mut Recovery> {
+        match &mut self.recovery {
+            Some(recovery) => Ok(recovery),
+            place => Ok(place.insert(Recovery::new(&self.solid.mesh, &self.numbering, layout)?)),
+        }
+    }
+
     /// Displacement and stress at this rank's nodes; stress is the mean of what the cells around a node say.
-    pub fn fields(&mut self, bulk: &mut Bulk, u: &Vector) -> Result<BulkFields> {
-        let recovery = match &mut self.recovery {
-            Some(recovery) => recovery,
-            None => self.recovery.insert(Recovery::new(&self.mesh, &self.numbering, u)?),
-        };
-        let mut effective: Vec<Vec<f64>> = Vec::new();
-        bulk.effective(u, |y| {
-            let mut values = vec![0.0; recovery.gathered];
-            recovery.gather.gather(y, &mut values)?;
-            effective.push(values);
-            Ok(())
-        })?;
+    /// `effective` holds what [`Self::around`] gave for each part's effective displacement.
+    pub fn fields(&mut self, u: &Vector, effective: &[Vec<f64>]) -> Result<BulkFields> {
+        self.recovery(u)?;
+        let Some(recovery) = &self.recovery else { return Ok(BulkFields::default()) };
         let mut sums = vec![(Vector4::<f64>::zeros(), 0.0); self.numbering.owned.len()];
         for (&cell, places) in recovery.cells.iter().zip(&recovery.places) {
-            let region = self.regions[usize::from(self.mesh.regions[cell])];
+            let region = self.solid.region(cell);
             let answers = [(region.moduli.shear, region.shear_part), (region.moduli.bulk, region.bulk_part)]
                 .map(|(modulus, part)| (modulus, effective[part].as_slice()));
-            let stress = corner_stress(&self.mesh, self.quadrilateral, cell, places, answers);
-            for (&unknown, stress) in self.mesh.cell_unknowns(cell).corners().iter().zip(stress) {
+            let stress = corner_stress(&self.solid, cell, places, answers);
+            for (&unknown, stress) in self.solid.mesh.cell_unknowns(cell).corners().iter().zip(stress) {
                 if let Some(local) = self.numbering.local(unknown) {
                     sums[local].0 += stress;
                     sums[local].1 += 1.0;
@@ -146,7 +196,7 @@ impl Body {
         }
         let values = u.view()?;
         let mut fields = BulkFields::default();
-        for (node, &unknown) in self.mesh.unknown.iter().enumerate() {
+        for (node, &unknown) in self.solid.mesh.unknown.iter().enumerate() {
             if let Some(local) = self.numbering.local(unknown) {
                 fields.nodes.push(node);
                 fields.displacement.push([values[2 * local], values[2 * local + 1]]);
@@ -156,18 +206,10 @@ impl Body {
         Ok(fields)
     }
 
-    /// The split stiffness of a quadrilateral.
-    fn quadrilateral(&self, corners: &[Vector2<f64>; 4]) -> Split<8> {
-        match self.quadrilateral {
-            Quadrilateral::Plain => quad4::stiffness(corners),
-            Quadrilateral::MeanDilatation => bbar::stiffness(corners),
-        }
-    }
-
     /// The held unknowns that this rank owns, as global row numbers.
     fn held(&self) -> Vec<i32> {
         let rows = |&unknown: &u32| {
-            let (global, held) = (self.numbering.global[unknown as usize], self.mesh.held[unknown as usize]);
+            let (global, held) = (self.numbering.global[unknown as usize], self.solid.mesh.held[unknown as usize]);
             (0..2).filter(move |&component| held[component]).map(move |component| 2 * global + component as i32)
         };
         self.numbering.unknowns.iter().flat_map(rows).collect()
@@ -176,13 +218,8 @@ impl Body {
 
 /// Stress at the corners of a cell (those of a triangle first), Pa. `answers`: the shear and the bulk modulus, Pa, each
 /// with the displacements that it answers to, of which the cell's are at `places`, node by node.
-fn corner_stress(
-    mesh: &Mesh,
-    kind: Quadrilateral,
-    cell: usize,
-    places: &Cell,
-    answers: [(f64, &[f64]); 2],
-) -> [Vector4<f64>; 4] {
+fn corner_stress(solid: &Solid, cell: usize, places: &Cell, answers: [(f64, &[f64]); 2]) -> [Vector4<f64>; 4] {
+    let mesh = &solid.mesh;
     let entry = |values: &[f64], row: usize| values[2 * places.corners()[row / 2] as usize + row % 2];
     match mesh.cells[cell] {
         Cell::Triangle(corners) => {
@@ -195,7 +232,7 @@ fn corner_stress(
             let [u, v] = answers.map(|(_, values)| SVector::from_fn(|row, _| entry(values, row)));
             let [shear, bulk] = [(answers[0].0, &u), (answers[1].0, &v)]
                 .map(|(modulus, displacement)| Answer { modulus, displacement });
-            match kind {
+            match solid.quadrilateral {
                 Quadrilateral::Plain => quad4::corner_stress(&mesh.points(corners), shear, bulk),
                 Quadrilateral::MeanDilatation => bbar::corner_stress(&mesh.points(corners), shear, bulk),
             }

@@ -124,6 +124,14 @@ impl Implicit for Driver<'_> {
         outcome
     }
 
+    fn multiply(&mut self, v: &Vector, product: &mut Vector) -> Result<()> {
+        self.problem.multiply(v, product)
+    }
+
+    fn solve(&mut self, b: &Vector, x: &mut Vector) -> Result<()> {
+        self.problem.solve(b, x)
+    }
+
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
         self.problem.test(iteration, norm)
     }

@@ -1,15 +1,20 @@
 //! Solving the transient problem: what a strategy must offer, and the driver that steps it.
 
 mod body;
+mod condensed;
 mod driver;
+mod face;
 mod monolithic;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::interface::{Fields, Interface, Surface, Totals};
 use crate::loading::{Phase, Placement};
 use crate::petsc::{Matrix, Step, Vector, Verdict};
 
-pub use body::{Body, Moduli, Region};
+pub use body::{Body, Moduli, Region, Solid};
+pub use condensed::{
+    Backing, Compliance, Condensed, Following, Interior, LARGE_FACE, PeriodicColumn, Relaxation, Remembering, Source,
+};
 pub use driver::{Counts, Driver, Limits};
 pub use monolithic::Monolithic;
 
@@ -24,6 +29,14 @@ pub trait TransientProblem {
     fn residual(&mut self, step: Step, u: &Vector, rate: &Vector, f: &mut Vector) -> Result<()>;
     /// tangent = dF/du + (1/dt) dF/d(rate).
     fn tangent(&mut self, step: Step, u: &Vector, rate: &Vector, tangent: &mut Matrix) -> Result<()>;
+    /// product = tangent v; only where the tangent is a [`Matrix::shell`].
+    fn multiply(&mut self, _v: &Vector, _product: &mut Vector) -> Result<()> {
+        Err(Error::Internal("the tangent of this problem is a matrix".into()))
+    }
+    /// x = tangent^-1 b; only where the tangent is a [`Matrix::shell`].
+    fn solve(&mut self, _b: &Vector, _x: &mut Vector) -> Result<()> {
+        Err(Error::Internal("the tangent of this problem is a matrix".into()))
+    }
     /// Judges a Newton iterate by the norm of its residual.
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
     /// Takes the accepted state to the end of an accepted step.

@@ -9,15 +9,26 @@ use libtest_mimic::{Arguments, Failed, Trial};
 /// The argument before the name of the body.
 const BODY: &str = "--mpi-body";
 
+/// What every rank does, with the world communicator and a directory that the ranks share and no other case.
+pub type Body = fn(&mpi::topology::SimpleCommunicator, &Path);
+
 /// A test: its name, the ranks to run it on, and what every rank does.
 pub struct Case {
     pub name: &'static str,
     pub ranks: &'static [usize],
-    pub body: fn(&mpi::topology::SimpleCommunicator, &Path),
+    pub body: Body,
+    /// The directory is a disk of so many bytes of its own.
+    pub disk: Option<usize>,
 }
 
-/// The `main` of a test with `harness = false`. Each body gets the world communicator and a directory that its ranks
-/// share and no other case.
+impl Case {
+    /// A case on the common disk.
+    pub const fn new(name: &'static str, ranks: &'static [usize], body: Body) -> Self {
+        Self { name, ranks, body, disk: None }
+    }
+}
+
+/// The `main` of a test with `harness = false`.
 pub fn main(cases: &'static [Case]) {
     let mut args = std::env::args().skip_while(|arg| arg != BODY).skip(1);
     if let (Some(name), Some(directory)) = (args.next(), args.next()) {
@@ -26,7 +37,10 @@ pub fn main(cases: &'static [Case]) {
     let trials = cases
         .iter()
         .flat_map(|case| case.ranks.iter().map(move |&ranks| (case, ranks)))
-        .map(|(case, ranks)| Trial::test(format!("{}_on_{ranks}", case.name), move || launch(case.name, ranks)))
+        .map(|(case, ranks)| {
+            Trial::test(format!("{}_on_{ranks}", case.name), move || launch(case, ranks))
+                .with_ignored_flag(case.disk.is_some() && mounting().is_none())
+        })
         .collect();
     // Two cores: the ranks of one case are enough at a time.
     let arguments = Arguments { test_threads: Some(1), ..Arguments::from_args() };
@@ -43,14 +57,34 @@ fn run_body(cases: &[Case], name: &str, directory: &Path) {
     }
 }
 
-fn launch(name: &str, ranks: usize) -> Result<(), Failed> {
+fn launch(case: &Case, ranks: usize) -> Result<(), Failed> {
     let directory = tempfile::tempdir()?;
-    let output = mpirun(ranks).arg(std::env::current_exe()?).args([BODY, name]).arg(directory.path()).output()?;
+    let mut command = mpirun(ranks);
+    command.arg(std::env::current_exe()?).args([BODY, case.name]).arg(directory.path());
+    if let (Some(size), Some(mut inside)) = (case.disk, mounting()) {
+        let mount = format!("mount -t tmpfs -o size={size} tmpfs \"$0\" && exec \"$@\"");
+        inside.args(["sh", "-c", &mount]).arg(directory.path());
+        inside.arg(command.get_program()).args(command.get_args());
+        inside.envs(command.get_envs().filter_map(|(key, value)| Some((key, value?))));
+        command = inside;
+    }
+    let output = command.output()?;
     if output.status.success() {
         return Ok(());
     }
     let text = [output.stdout, output.stderr].concat();
     Err(format!("{} under mpirun:\n{}", output.status, String::from_utf8_lossy(&text)).into())
+}
+
+/// What a command that mounts a disk of its own is to be started by, if that is possible here.
+fn mounting() -> Option<Command> {
+    [&["--user", "--map-root-user", "--mount"][..], &["--mount"]].into_iter().find_map(|how| {
+        let mut command = Command::new("unshare");
+        let works = command.args(how).args(["sh", "-c", "mount -t tmpfs tmpfs /mnt"]).output();
+        let mut command = Command::new("unshare");
+        command.args(how);
+        works.is_ok_and(|output| output.status.success()).then_some(command)
+    })
 }
 
 /// `mpirun -n RANKS` with what containers, root and few cores need.

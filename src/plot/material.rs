@@ -1,0 +1,264 @@
+//! Figures of a material: what Bonari and Paggi (2020), Figure 3, shows of theirs.
+
+use super::{Axis, Curve, Figure, PALETTE, REFERENCE, Stroke};
+use crate::rheology::fit::{Samples, Test};
+use crate::rheology::{Band, Fractional, Prony};
+
+/// A series to draw.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Series<'a> {
+    /// Its entry in the legend: `3 arms`.
+    pub label: &'a str,
+    /// The instantaneous modulus, Pa.
+    pub instantaneous: f64,
+    /// The series.
+    pub prony: &'a Prony,
+}
+
+/// What the series stand for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reference<'a> {
+    /// Nothing more is known.
+    None,
+    /// The power law.
+    Law(Fractional),
+    /// Measurements.
+    Data(&'a Samples),
+}
+
+/// Figure 3 of the paper and one more.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MaterialFigures<'a> {
+    /// The modulus: `G` or `E`.
+    pub symbol: &'a str,
+    /// At most six; more repeat colours.
+    pub series: Vec<Series<'a>>,
+    /// What they stand for.
+    pub reference: Reference<'a>,
+    /// The times that the series were made for; the figures show two decades more on either side.
+    pub band: Band,
+}
+
+impl MaterialFigures<'_> {
+    /// Every figure with the name of its file: relaxation, moduli and loss_tangent (Figure 3 a to c), comparison
+    /// (Figure 3 d) with a law or relaxation data, and deviation with any reference.
+    pub fn all(&self) -> Vec<(&'static str, Figure)> {
+        let mut figures =
+            vec![("relaxation", self.relaxation()), ("moduli", self.moduli()), ("loss_tangent", self.loss_tangent())];
+        // Dynamic data stand beside the series in the second figure already.
+        if !matches!(self.reference, Reference::None | Reference::Data(Samples { test: Test::Dynamic, .. })) {
+            figures.push(("comparison", self.comparison()));
+        }
+        if self.reference != Reference::None {
+            figures.push(("deviation", self.deviation()));
+        }
+        figures
+    }
+
+    /// Figure 3a: the relaxation modulus over the band.
+    fn relaxation(&self) -> Figure {
+        let times = self.band.samples(400);
+        let mut curves = self.curves(|series, t| series.instantaneous * series.prony.relaxation(t), &times);
+        curves.extend(self.reference_curves(&times, Test::Relaxation, |law, t| law.relaxation(t), 0));
+        let label = format!("relaxation modulus {}(t), Pa", self.symbol);
+        Figure {
+            title: "Relaxation modulus".into(),
+            x: Axis::log("time t, s").over(self.band.from, self.band.to),
+            y: Axis::linear(label),
+            curves,
+            shaded: None,
+        }
+    }
+
+    /// Figure 3b: storage (solid) and loss modulus (dashed).
+    fn moduli(&self) -> Figure {
+        let frequencies = self.frequencies().samples(600);
+        let modulus = |series: &Series, w: f64| series.instantaneous * series.prony.complex_modulus(w);
+        let mut curves = self.curves(|series, w| modulus(series, w).re, &frequencies);
+        curves.iter_mut().for_each(|curve| curve.label = format!("{}′, {}", self.symbol, curve.label));
+        let mut loss = self.curves(|series, w| modulus(series, w).im, &frequencies);
+        for curve in &mut loss {
+            curve.label = format!("{}″, {}", self.symbol, curve.label);
+            curve.stroke = Stroke::Dashed;
+        }
+        curves.extend(loss);
+        curves.extend(self.reference_curves(&frequencies, Test::Dynamic, |law, w| law.complex_modulus(w).re, 0));
+        curves.extend(self.reference_curves(&frequencies, Test::Dynamic, |law, w| law.complex_modulus(w).im, 1));
+        Figure {
+            title: "Storage and loss modulus".into(),
+            x: self.frequency_axis(),
+            y: Axis::log(format!("{s}′ and {s}″, Pa", s = self.symbol)),
+            curves,
+            shaded: Some(self.frequencies_of_the_data()),
+        }
+    }
+
+    /// Figure 3c: the loss tangent.
+    fn loss_tangent(&self) -> Figure {
+        let frequencies = self.frequencies().samples(600);
+        let tangent = |modulus: nalgebra::Complex<f64>| modulus.im / modulus.re;
+        let mut curves = self.curves(|series, w| tangent(series.prony.complex_modulus(w)), &frequencies);
+        curves.extend(self.reference_curves(&frequencies, Test::Dynamic, |law, w| tangent(law.complex_modulus(w)), 2));
+        Figure {
+            title: "Loss tangent".into(),
+            x: self.frequency_axis(),
+            y: Axis::linear(format!("tan δ = {s}″/{s}′", s = self.symbol)),
+            curves,
+            shaded: Some(self.frequencies_of_the_data()),
+        }
+    }
+
+    /// Figure 3d: what the series stand for beside them, beyond the band too.
+    fn comparison(&self) -> Figure {
+        let times = self.times().samples(600);
+        let mut curves = self.curves(|series, t| series.instantaneous * series.prony.relaxation(t), &times);
+        curves.extend(self.reference_curves(&times, Test::Relaxation, |law, t| law.relaxation(t), 0));
+        Figure {
+            title: "The series inside and outside the band of the data".into(),
+            x: self.time_axis(),
+            y: Axis::log(format!("relaxation modulus {}(t), Pa", self.symbol)),
+            curves,
+            shaded: Some((self.band, "band of the data".into())),
+        }
+    }
+
+    /// The relative deviation of the relaxation modulus, in percent, with the 5 % that a series is trusted to.
+    fn deviation(&self) -> Figure {
+        let times = self.times();
+        let (mut curves, within) = match self.reference {
+            Reference::None => (Vec::new(), times),
+            Reference::Law(law) => {
+                let ratio =
+                    |series: &Series, t: f64| series.instantaneous * series.prony.relaxation(t) / law.relaxation(t);
+                (self.curves(|series, t| 100.0 * (ratio(series, t) - 1.0), &times.samples(600)), times)
+            }
+            Reference::Data(samples @ Samples { test: Test::Relaxation, .. }) => {
+                (self.deviation_from_data(samples), self.band)
+            }
+            Reference::Data(samples) => (self.deviation_from_data(samples), self.reciprocal()),
+        };
+        for (limit, label) in [(5.0, "±5 %"), (-5.0, "")] {
+            curves.push(Curve {
+                label: label.into(),
+                points: vec![(within.from, limit), (within.to, limit)],
+                colour: REFERENCE,
+                stroke: Stroke::Dotted,
+            });
+        }
+        let x = match self.reference {
+            Reference::Data(Samples { test: Test::Dynamic, .. }) => self.frequency_axis(),
+            _ => self.time_axis(),
+        };
+        Figure {
+            title: "Deviation of the series from what it stands for".into(),
+            x: x.over(within.from, within.to),
+            y: Axis::linear(format!("deviation of {}, %", self.symbol)).over(-20.0, 20.0),
+            curves,
+            shaded: matches!(self.reference, Reference::Law(_)).then(|| (self.band, "band of the data".into())),
+        }
+    }
+
+    /// At the measured points; storage solid and loss dashed for a dynamic test.
+    fn deviation_from_data(&self, samples: &Samples) -> Vec<Curve> {
+        let points = samples.at.len();
+        let curve = |series: &Series, i: usize, part: usize| {
+            let values = samples.at.iter().zip(&samples.values[part * points..]).map(|(&at, value)| {
+                let model = match (samples.test, part) {
+                    (Test::Relaxation, _) => series.prony.relaxation(at),
+                    (Test::Dynamic, 0) => series.prony.complex_modulus(at).re,
+                    (Test::Dynamic, _) => series.prony.complex_modulus(at).im,
+                };
+                (at, 100.0 * (series.instantaneous * model / value - 1.0))
+            });
+            let prime = match (samples.test, part) {
+                (Test::Relaxation, _) => String::new(),
+                (Test::Dynamic, 0) => format!("{}′, ", self.symbol),
+                (Test::Dynamic, _) => format!("{}″, ", self.symbol),
+            };
+            Curve {
+                label: format!("{prime}{}", series.label),
+                points: values.collect(),
+                colour: PALETTE[i % PALETTE.len()],
+                stroke: if part == 0 { Stroke::Solid } else { Stroke::Dashed },
+            }
+        };
+        let parts = samples.values.len() / points.max(1);
+        (0..parts).flat_map(|part| self.series.iter().enumerate().map(move |(i, s)| curve(s, i, part))).collect()
+    }
+
+    /// Two decades more than the band on either side.
+    fn times(&self) -> Band {
+        Band { from: self.band.from / 100.0, to: self.band.to * 100.0 }
+    }
+
+    fn frequencies(&self) -> Band {
+        Band { from: 1.0 / self.times().to, to: 1.0 / self.times().from }
+    }
+
+    fn reciprocal(&self) -> Band {
+        Band { from: 1.0 / self.band.to, to: 1.0 / self.band.from }
+    }
+
+    fn frequencies_of_the_data(&self) -> (Band, String) {
+        let label = match self.reference {
+            Reference::Data(Samples { test: Test::Dynamic, .. }) => "band of the data",
+            Reference::None => "1/t of the band",
+            _ => "1/t of the data",
+        };
+        (self.reciprocal(), label.into())
+    }
+
+    fn time_axis(&self) -> Axis {
+        Axis::log("time t, s").over(self.times().from, self.times().to)
+    }
+
+    fn frequency_axis(&self) -> Axis {
+        Axis::log("angular frequency ω, rad/s").over(self.frequencies().from, self.frequencies().to)
+    }
+
+    fn curves(&self, value: impl Fn(&Series, f64) -> f64, at: &[f64]) -> Vec<Curve> {
+        let curve = |(i, series): (usize, &Series)| Curve {
+            label: series.label.into(),
+            points: at.iter().map(|&x| (x, value(series, x))).collect(),
+            colour: PALETTE[i % PALETTE.len()],
+            stroke: Stroke::Solid,
+        };
+        self.series.iter().enumerate().map(curve).collect()
+    }
+
+    /// The power law as a black line, or the data as rings: part 0 is the relaxation or storage modulus, 1 the loss
+    /// modulus, 2 the loss tangent. Data of the other test have nothing to show.
+    fn reference_curves(
+        &self,
+        at: &[f64],
+        test: Test,
+        law: impl Fn(Fractional, f64) -> f64,
+        part: usize,
+    ) -> Option<Curve> {
+        match self.reference {
+            Reference::None => None,
+            Reference::Law(fractional) => Some(Curve {
+                // The loss modulus of the law is the second black line; one entry is enough.
+                label: if part == 1 { String::new() } else { "power law".into() },
+                points: at.iter().map(|&x| (x, law(fractional, x))).collect(),
+                colour: REFERENCE,
+                stroke: Stroke::Dotted,
+            }),
+            Reference::Data(samples) if samples.test == test => {
+                let (storage, loss) = samples.values.split_at(samples.at.len());
+                let value = |i: usize| match part {
+                    0 => storage[i],
+                    1 => loss[i],
+                    _ => loss[i] / storage[i],
+                };
+                Some(Curve {
+                    label: if part == 1 { String::new() } else { "data".into() },
+                    points: samples.at.iter().enumerate().map(|(i, &x)| (x, value(i))).collect(),
+                    colour: REFERENCE,
+                    stroke: Stroke::Points,
+                })
+            }
+            Reference::Data(_) => None,
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! The contact face of a problem whose unknowns are distributed: its trial and accepted states.
+//!
+//! What both strategies share: they differ in what stands behind the face.
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::Contact;
+use crate::error::{Error, Result};
+use crate::interface::{Interface, Residual, Surface, Tangent};
+use crate::loading::{Phase, Placement};
+use crate::petsc::{Gather, Step, Vector, Verdict};
+
+/// The contact face, known whole on every rank.
+pub struct ContactFace {
+    interface: Interface,
+    gather: Gather,
+    /// 0 for the held components of each face node, 1 for the free ones.
+    free: Vec<Vector2<f64>>,
+    phase: Option<Phase>,
+    accepted: State,
+    trial: State,
+    /// Contact forces at the trial state, internal minus external, N/m; zero where a component is held.
+    pub residual: Residual,
+    /// Their derivatives at the trial state; zero where a component is held.
+    pub tangent: Tangent,
+    first_norm: f64,
+}
+
+/// The face at some state.
+struct State {
+    surface: Surface,
+    placement: Placement,
+    /// How large the contact forces are, in the norm of the convergence test.
+    scale: f64,
+}
+
+impl ContactFace {
+    /// At rest. `gather` brings x, z of each face node out of a solution vector; `held` says which of them are held.
+    pub fn new(interface: Interface, gather: Gather, held: &[[bool; 2]]) -> Self {
+        let at_rest = || State { surface: Surface::at_rest(held.len()), placement: Placement::default(), scale: 0.0 };
+        Self {
+            accepted: at_rest(),
+            trial: at_rest(),
+            free: held.iter().map(|[x, z]| Vector2::new(f64::from(!x), f64::from(!z))).collect(),
+            interface,
+            gather,
+            phase: None,
+            residual: Residual::new(),
+            tangent: Tangent::default(),
+            first_norm: 0.0,
+        }
+    }
+
+    /// The laws on the face.
+    pub fn interface(&self) -> &Interface {
+        &self.interface
+    }
+
+    /// What the following steps are driven by.
+    pub fn begin(&mut self, phase: Phase) {
+        self.phase = Some(phase);
+    }
+
+    /// Makes `residual` hold at a trial state.
+    pub fn try_residual(&mut self, step: Step, u: &Vector, rate: &Vector) -> Result<()> {
+        self.try_state(step, u, rate)?;
+        self.interface.residual(self.trial.placement, &self.trial.surface, &mut self.residual)?;
+        self.mask_residual();
+        Ok(())
+    }
+
+    fn mask_residual(&mut self) {
+        for (force, free) in self.residual.iter_mut().zip(&self.free) {
+            force.component_mul_assign(free);
+        }
+    }
+
+    /// Makes `tangent` hold at a trial state.
+    pub fn try_tangent(&mut self, step: Step, u: &Vector, rate: &Vector) -> Result<()> {
+        self.try_state(step, u, rate)?;
+        let Self { interface, trial, tangent, free, .. } = self;
+        interface.tangent(trial.placement, &trial.surface, 1.0 / step.dt, tangent)?;
+        let mask = |row: usize, column: usize, block: &mut Matrix2<f64>| {
+            block.component_mul_assign(&(free[row] * free[column].transpose()));
+        };
+        for (node, block) in tangent.diagonal.iter_mut().enumerate() {
+            mask(node, node, block);
+        }
+        for (edge, coupling) in interface.face().edges.iter().zip(&mut tangent.coupling) {
+            for ((row, column), block) in edge.directions().into_iter().zip(coupling) {
+                mask(row, column, block);
+            }
+        }
+        Ok(())
+    }
+
+    /// The Euclidean norm of `residual`, N/m.
+    pub fn contact_norm(&self) -> f64 {
+        self.residual.iter().map(|force| force.norm_squared()).sum::<f64>().sqrt()
+    }
+
+    /// Says how large the contact forces of the trial state are, in the norm of the convergence test.
+    pub fn set_scale(&mut self, scale: f64) {
+        self.trial.scale = scale;
+    }
+
+    /// Judges a Newton iterate by the norm of its residual: converged below `tolerance` times the scale of the contact
+    /// forces (at this or the accepted state, the larger; without contact, times the first norm of the step), or at
+    /// the `noise` that round-off leaves. At least one iteration is made unless the first guess is as good as
+    /// round-off.
+    pub fn test(&mut self, iteration: usize, norm: f64, tolerance: f64, noise: f64) -> Verdict {
+        if iteration == 0 {
+            self.first_norm = norm;
+        }
+        if !norm.is_finite() {
+            return Verdict::Diverged;
+        }
+        let scale = self.trial.scale.max(self.accepted.scale);
+        let reference = if scale > 0.0 { scale } else { self.first_norm };
+        let tolerance = if iteration == 0 { 8.0 * f64::EPSILON } else { tolerance };
+        if norm <= (tolerance * reference).max(noise) { Verdict::Converged } else { Verdict::Iterate }
+    }
+
+    /// The force norm that round-off in the gap leaves, N/m.
+    pub fn noise(&self) -> f64 {
+        8.0 * self.interface.noise(self.trial.placement, &self.trial.surface)
+    }
+
+    /// Takes the accepted state to the end of an accepted step.
+    pub fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {
+        let placement = self.phase()?.placement(step.t, step.dt);
+        let State { surface, .. } = &mut self.accepted;
+        let mut before = vec![0.0; surface.displacement.len()];
+        std::mem::swap(&mut before, &mut surface.displacement);
+        self.gather.gather(u, &mut surface.displacement)?;
+        for ((rate, new), old) in surface.rate.iter_mut().zip(&surface.displacement).zip(&before) {
+            *rate = (new - old) / step.dt;
+        }
+        self.accepted.placement = placement;
+        self.accepted.scale = self.trial.scale;
+        Ok(())
+    }
+
+    /// Makes `residual` hold at the accepted state.
+    pub fn accepted_residual(&mut self) -> Result<()> {
+        let State { surface, placement, .. } = &self.accepted;
+        self.interface.residual(*placement, surface, &mut self.residual)?;
+        self.mask_residual();
+        Ok(())
+    }
+
+    /// The contact at the accepted state.
+    pub fn contact(&mut self) -> Contact<'_> {
+        let State { surface, placement, .. } = &self.accepted;
+        Contact { interface: &mut self.interface, placement: *placement, surface }
+    }
+
+    /// x, z of each face node of a solution vector, on every rank.
+    pub fn gather(&mut self, vector: &Vector) -> Result<Vec<f64>> {
+        let mut values = vec![0.0; 2 * self.free.len()];
+        self.gather.gather(vector, &mut values)?;
+        Ok(values)
+    }
+
+    /// The Euclidean norm of the face's displacements at the trial state, m.
+    pub fn trial_norm(&self) -> f64 {
+        self.trial.surface.displacement.iter().map(|u| u * u).sum::<f64>().sqrt()
+    }
+
+    /// Brings the face's displacements, rates and the indenter's place to a trial state.
+    fn try_state(&mut self, step: Step, u: &Vector, rate: &Vector) -> Result<()> {
+        self.trial.placement = self.phase()?.placement(step.t, step.dt);
+        self.gather.gather(u, &mut self.trial.surface.displacement)?;
+        self.gather.gather(rate, &mut self.trial.surface.rate)
+    }
+
+    fn phase(&self) -> Result<&Phase> {
+        self.phase.as_ref().ok_or_else(|| Error::Internal("no phase has begun".into()))
+    }
+}

@@ -1,0 +1,90 @@
+//! Figures are written whole, twice, and over nothing that is not theirs.
+#![allow(clippy::unwrap_used)]
+
+use mpjr::plot::material::{MaterialFigures, Reference, Series};
+use mpjr::plot::{Axis, Curve, Figure, PALETTE, Stroke};
+use mpjr::rheology::{Arm, Band, Fractional, Prony};
+
+fn figure(x: Axis, y: Axis, points: Vec<(f64, f64)>) -> Figure {
+    let curve =
+        |stroke, i: usize| Curve { label: format!("{stroke:?}"), points: points.clone(), colour: PALETTE[i], stroke };
+    let strokes = [Stroke::Solid, Stroke::Dashed, Stroke::Dotted, Stroke::Points];
+    Figure {
+        title: "a < b & c".into(),
+        x,
+        y,
+        curves: strokes.into_iter().enumerate().map(|(i, stroke)| curve(stroke, i)).collect(),
+        shaded: None,
+    }
+}
+
+#[test]
+fn figure_3_is_drawn_as_png_and_svg() {
+    let prony = Prony { arms: vec![Arm { weight: 0.579, time: 0.817 }] };
+    let figures = MaterialFigures {
+        symbol: "E",
+        series: vec![Series { label: "1 arm", instantaneous: 2.0 * 568.498, prony: &prony }],
+        reference: Reference::Law(Fractional::new(814.7, 0.226).unwrap()),
+        band: Band::new(0.1, 10.0).unwrap(),
+    };
+    let directory = tempfile::tempdir().unwrap();
+    let all = figures.all();
+    assert_eq!(
+        all.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
+        ["relaxation", "moduli", "loss_tangent", "comparison", "deviation"]
+    );
+    for (name, figure) in all {
+        // Twice: what this program drew it may draw again.
+        for _ in 0..2 {
+            let [png, svg] = figure.write(&directory.path().join(name)).unwrap();
+            let bytes = std::fs::read(&png).unwrap();
+            let image = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+            assert_eq!((image.info().width, image.info().height), (1800, 1200));
+            let text = std::fs::read_to_string(&svg).unwrap();
+            assert!(text.contains("width=\"900\" height=\"600\" viewBox=\"0 0 3600 2400\"") && text.contains("1 arm"));
+            for curve in &figure.curves {
+                assert!(text.contains(&curve.label), "{name} lacks {}", curve.label);
+            }
+        }
+    }
+}
+
+/// No data, one point, equal points, numbers that no axis has: a figure all the same.
+#[test]
+fn odd_data_are_drawn_without_failing() {
+    let directory = tempfile::tempdir().unwrap();
+    let cases = [
+        vec![],
+        vec![(1.0, 1.0)],
+        vec![(1.0, 0.0), (2.0, 0.0)],
+        vec![(1.0, -5.0), (1.0, 7.0)],
+        vec![(1.0, f64::NAN), (2.0, f64::INFINITY), (3.0, 1.0), (4.0, 2.0)],
+        vec![(1e-300, 1e-300), (1e300, 1e300)],
+        vec![(-1e300, -1e300), (1e300, 1e300)],
+        vec![(1.0, 1.0), (1.0 + 1e-15, 1.0 + 1e-15)],
+        (0..2_000).map(|i| (f64::from(i), f64::from(i).sin())).collect(),
+    ];
+    for (i, points) in cases.into_iter().enumerate() {
+        for (j, x) in [Axis::linear("x, m"), Axis::log("x, m")].into_iter().enumerate() {
+            for (k, y) in [Axis::linear("y, Pa"), Axis::log("y, Pa")].into_iter().enumerate() {
+                let [_, svg] = figure(x.clone(), y, points.clone())
+                    .write(&directory.path().join(format!("odd {i}.{j}.{k}")))
+                    .unwrap();
+                let text = std::fs::read_to_string(svg).unwrap();
+                assert!(text.contains("a &lt; b &amp; c") && !text.contains("NaN") && !text.contains("inf"));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_foreign_file_is_not_replaced() {
+    let directory = tempfile::tempdir().unwrap();
+    let photo = directory.path().join("holiday.svg");
+    std::fs::write(&photo, "<svg/>").unwrap();
+    let figure = figure(Axis::linear("x"), Axis::linear("y"), vec![(0.0, 0.0), (1.0, 1.0)]);
+    let error = figure.write(&directory.path().join("holiday")).unwrap_err();
+    assert_eq!(error.exit_code(), 4);
+    assert_eq!(std::fs::read_to_string(&photo).unwrap(), "<svg/>");
+    assert!(!directory.path().join("holiday.png").exists());
+}

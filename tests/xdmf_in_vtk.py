@@ -1,0 +1,43 @@
+"""Opens an XDMF file as ParaView does (vtkXdmfReader) and compares every frame with h5py: python3 tests/xdmf_in_vtk.py FILE.xdmf"""
+
+import sys
+
+import h5py
+import numpy as np
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
+
+
+def check(path):
+    errors = []
+    reader = vtk.vtkXdmfReader()
+    reader.AddObserver("ErrorEvent", lambda *_: errors.append("vtkXdmfReader reports an error"))
+    reader.SetFileName(path)
+    reader.UpdateInformation()
+    steps = reader.GetOutputInformation(0).Get(vtk.vtkStreamingDemandDrivenPipeline.TIME_STEPS())
+    with h5py.File(path.removesuffix(".xdmf") + ".h5", "r") as file:
+        bulk = file["bulk"]
+        assert np.array_equal(steps, bulk["time"][:]), (steps, bulk["time"][:])
+        for frame, time in enumerate(steps):
+            reader.UpdateTimeStep(time)
+            grid = reader.GetOutputDataObject(0)
+            while isinstance(grid, vtk.vtkMultiBlockDataSet):
+                grid = grid.GetBlock(0)
+            nodes, cells = len(bulk["coordinates"]), len(bulk["cells"])
+            assert (grid.GetNumberOfPoints(), grid.GetNumberOfCells()) == (nodes, cells)
+            assert grid.GetCellType(0) == vtk.VTK_QUAD
+            assert np.array_equal(vtk_to_numpy(grid.GetPoints().GetData())[:, :2], bulk["coordinates"][:])
+            assert np.array_equal(vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4), bulk["cells"][:])
+            data = grid.GetPointData()
+            displacement = vtk_to_numpy(data.GetArray("displacement"))
+            assert displacement.shape == (nodes, 3) and np.all(displacement[:, 2] == 0.0)
+            assert np.array_equal(displacement[:, :2], bulk["displacement"][frame]), frame
+            for component, name in enumerate(bulk["stress"].attrs["components"]):
+                stress = vtk_to_numpy(data.GetArray(f"stress_{name}"))
+                assert np.array_equal(stress.ravel(), bulk["stress"][frame, :, component]), (frame, name)
+    assert not errors, errors
+    print(f"{path}: {len(steps)} frames as in the HDF5 file")
+
+
+for path in sys.argv[1:]:
+    check(path)
