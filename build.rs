@@ -8,8 +8,12 @@ const FUNCTIONS: &str = include_str!("src/petsc/functions.txt");
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo:rerun-if-changed=src/petsc/functions.txt");
     println!("cargo:rerun-if-changed=src/petsc/wrapper.h");
-    println!("cargo:rerun-if-changed=.git/HEAD");
-    println!("cargo:rerun-if-changed=.git/refs/heads");
+    for path in ["HEAD", "logs/HEAD"].iter().filter_map(|name| git(&["rev-parse", "--git-path", name])) {
+        // A path that is not there would count as changed at every build.
+        if std::path::Path::new(&path).exists() {
+            println!("cargo:rerun-if-changed={path}");
+        }
+    }
     println!("cargo:rustc-env=MPJR_GIT_COMMIT={}", git_commit());
 
     let petsc = pkg_config::Config::new()
@@ -52,11 +56,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// The commit this build was made from, or "unknown" outside a checkout.
 fn git_commit() -> String {
-    std::process::Command::new("git")
-        .args(["describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"])
-        .output()
-        .ok()
-        .filter(|output| output.status.success())
-        .and_then(|output| String::from_utf8(output.stdout).ok())
-        .map_or_else(|| "unknown".into(), |text| text.trim().to_owned())
+    git(&["describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]).unwrap_or_else(|| "unknown".into())
+}
+
+/// What git says, where there is a git and a checkout.
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = std::process::Command::new("git").args(arguments).output().ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }

@@ -1,6 +1,7 @@
 //! The composition root: the one place that matches on what a scene asks for and builds the parts for it.
 
 mod body;
+mod profile;
 
 use std::path::Path;
 
@@ -14,9 +15,9 @@ use crate::friction::Friction;
 use crate::interface::{Interface, Laws};
 use crate::loading::{self, Motion, Phase};
 use crate::mesh::Mesh;
-use crate::parallel::agree;
+use crate::parallel::{agree, share_numbers};
 use crate::petsc::{Linear, Matrix, Settings, Vector};
-use crate::profile::{Circle, Harmonic, Parabola, Profile, Repeated, Wedge};
+use crate::profile::Profile;
 use crate::scene::{self, Scene, When};
 use crate::solve::{
     Backing, Body, Compliance, Condensed, Following, Interior, LARGE_FACE, Limits, Monolithic, PeriodicColumn,
@@ -24,7 +25,8 @@ use crate::solve::{
 };
 
 use body::Materials;
-pub use body::mesh_alone;
+pub use body::{Outline, Stretch, outline};
+pub use profile::{Finest, Shape, elevations, shape};
 
 /// A scene made ready to run.
 pub struct Problem {
@@ -42,20 +44,26 @@ pub struct Problem {
     pub mesh: Mesh,
 }
 
-/// Builds what `scene`, read from `file`, asks for, distributed over `comm`.
+/// Builds what `scene`, which was read from `file`, asks for, distributed over `comm`. What it needs of other files is
+/// read by one rank.
 pub fn build(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Problem> {
+    // First what the scene may be refused for.
+    let elevations = share_numbers(comm, || elevations(scene, file))?;
+    let mesh = body::mesh(comm, scene, file)?;
+    let profile = shape(scene, file, &elevations, Stretch::of(scene, &mesh.face))?.profile;
+    assemble(comm, scene, mesh, profile)
+}
+
+/// As [`build`], with another profile than the scene's.
+pub fn build_with_profile(comm: &SimpleCommunicator, scene: &Scene, profile: Box<dyn Profile>) -> Result<Problem> {
+    assemble(comm, scene, body::mesh(comm, scene, Path::new(""))?, profile)
+}
+
+fn assemble(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, profile: Box<dyn Profile>) -> Result<Problem> {
     let materials = Materials::new(scene);
-    let solid = Solid {
-        mesh: body::mesh(comm, scene, file)?,
-        quadrilateral: body::quadrilateral(scene),
-        regions: materials.regions.clone(),
-    };
-    let laws = Laws {
-        profile: profile(scene),
-        penalty: scene.contact.penalty,
-        friction: scene.friction.as_ref().map(friction),
-    };
-    let interface = Interface::new(solid.mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
+    let laws = Laws { profile, penalty: scene.contact.penalty, friction: scene.friction.as_ref().map(friction) };
+    let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
+    let solid = Solid { mesh, quadrilateral: body::quadrilateral(scene), regions: materials.regions.clone() };
     match form(scene) {
         Form::Monolithic => monolithic(comm, scene, (solid, materials), interface),
         Form::Following => following(comm, scene, (solid, materials), interface),
@@ -76,10 +84,9 @@ pub enum Form {
 
 /// How `scene` is solved: on its contact face unless it says otherwise.
 pub fn form(scene: &Scene) -> Form {
-    let follows = Materials::new(scene).relax_alike();
     match scene.solver.strategy {
         scene::Strategy::Monolithic => Form::Monolithic,
-        scene::Strategy::Auto | scene::Strategy::Condensed if follows => Form::Following,
+        scene::Strategy::Auto | scene::Strategy::Condensed if Materials::new(scene).relax_alike() => Form::Following,
         scene::Strategy::Auto | scene::Strategy::Condensed => Form::Remembering,
     }
 }
@@ -183,23 +190,6 @@ fn periodic_column(scene: &Scene, solid: &Solid) -> Option<PeriodicColumn> {
 fn settings(linear: Linear) -> Settings {
     let Limits { max_newton, max_cuts } = Limits::default();
     Settings { linear, max_newton, max_cuts }
-}
-
-/// Under periodic sides every profile repeats with the layer's period.
-fn profile(scene: &Scene) -> Box<dyn Profile> {
-    let period = scene.period();
-    fn repeat<P: Profile + 'static>(profile: P, centre: f64, period: Option<f64>) -> Box<dyn Profile> {
-        match period {
-            Some(period) => Box::new(Repeated { profile, centre, period }),
-            None => Box::new(profile),
-        }
-    }
-    match scene.indenter {
-        scene::Indenter::Harmonic { amplitude, wavelength } => Box::new(Harmonic { amplitude, wavelength }),
-        scene::Indenter::Parabola { radius, centre } => repeat(Parabola { radius, centre }, centre, period),
-        scene::Indenter::Circle { radius, centre } => repeat(Circle { radius, centre }, centre, period),
-        scene::Indenter::Wedge { slope, centre } => repeat(Wedge { slope, centre }, centre, period),
-    }
 }
 
 fn friction(friction: &scene::Friction) -> Friction {

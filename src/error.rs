@@ -33,8 +33,12 @@ pub enum Error {
     /// A law cannot respond at the point it was asked for. Inside a solve the step is cut; outside it is an error of
     /// the scene.
     Domain(String),
+    /// What was computed is not what is known to be right: a defect of this program or of its installation. Exit code 1.
+    Mismatch(String),
     /// A library refused a call it should have taken: a defect of this program or of its installation. Exit code 1.
     Internal(String),
+    /// A signal stopped the run, and a checkpoint was written. Exit code 5.
+    Stopped(String),
 }
 
 impl Error {
@@ -48,13 +52,15 @@ impl Error {
         Self::File { file: file.to_owned(), reason: reason.to_string() }
     }
 
-    /// The exit code of the process: 2 scene or command line, 3 no convergence, 4 files, 1 anything else.
+    /// The exit code of the process: 2 scene or command line, 3 no convergence, 4 files, 5 stopped by a signal,
+    /// 1 anything else.
     pub fn exit_code(&self) -> i32 {
         match self {
             Self::Scene { .. } | Self::Usage(_) => 2,
             Self::Solver(_) | Self::Domain(_) => 3,
             Self::File { .. } => 4,
-            Self::Internal(_) => 1,
+            Self::Stopped(_) => 5,
+            Self::Mismatch(_) | Self::Internal(_) => 1,
         }
     }
 }
@@ -67,7 +73,12 @@ impl fmt::Display for Error {
             }
             Self::Scene { file, key, reason } => write!(f, "{}: {key}: {reason}", file.display()),
             Self::File { file, reason } => write!(f, "{}: {reason}", file.display()),
-            Self::Usage(text) | Self::Solver(text) | Self::Domain(text) | Self::Internal(text) => f.write_str(text),
+            Self::Usage(text)
+            | Self::Solver(text)
+            | Self::Domain(text)
+            | Self::Mismatch(text)
+            | Self::Internal(text)
+            | Self::Stopped(text) => f.write_str(text),
         }
     }
 }

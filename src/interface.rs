@@ -3,6 +3,8 @@
 //! Every rank holds the whole face (it is one dimension smaller than the body) and evaluates all of it from the same
 //! numbers, so every rank sees the same error and the same totals; each rank assembles only the rows that it owns.
 
+mod oscillation;
+
 use nalgebra::{Matrix2, Vector2};
 
 use crate::element::mpjr::{self, Frame, Motion, Over, Quadrature, Traction, Under};
@@ -84,6 +86,8 @@ pub struct Totals {
     pub stick_fraction: f64,
     /// m
     pub max_penetration: f64,
+    /// How much the tractions oscillate from node to node; 1 = nothing but a checkerboard.
+    pub traction_oscillation: f64,
 }
 
 /// Fields at the face's nodes, in the frames of the elements; at a node between elements of two directions, the mean.
@@ -145,6 +149,17 @@ impl Interface {
     /// Whether a friction law is modelled.
     pub fn has_friction(&self) -> bool {
         self.laws.friction.is_some()
+    }
+
+    /// Whether friction still answers to the slip rate at this one, m/s.
+    pub fn grips(&self, slip_rate: f64) -> bool {
+        let answer = |law: &Friction, rate| law.shear(1.0, rate).by_rate;
+        self.laws.friction.as_ref().is_some_and(|law| answer(law, slip_rate) > 1e-6 * answer(law, 0.0))
+    }
+
+    /// The largest share of the pressure that friction takes: f.
+    pub fn largest_drag(&self) -> f64 {
+        self.laws.friction.as_ref().map_or(0.0, |law| law.shear(1.0, f64::MAX).shear)
     }
 
     /// out = the residual with the indenter at `placement`.
@@ -220,6 +235,9 @@ impl Interface {
         }
         totals.contact_fraction = contact / length;
         totals.stick_fraction = if contact > 0.0 { stick / contact } else { 0.0 };
+        let Fields { pressure, shear, .. } = self.fields(placement, surface)?;
+        let tractions: Vec<_> = shear.into_iter().zip(pressure).map(|(q, p)| Vector2::new(q, p)).collect();
+        totals.traction_oscillation = oscillation::oscillation(&self.face.edges, &tractions);
         Ok(totals)
     }
 

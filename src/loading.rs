@@ -91,6 +91,17 @@ impl Phase {
         }
     }
 
+    /// The least and the greatest sliding of the phase, m.
+    pub fn sliding_range(&self) -> [f64; 2] {
+        let mut places = vec![self.sliding, self.final_sliding()];
+        if let Motion::Sinusoid { amplitude, cycles } = self.motion {
+            // The crests of the sine, a quarter and three quarters through its first cycle.
+            places.extend((cycles >= 0.25).then_some(self.sliding + amplitude));
+            places.extend((cycles >= 0.75).then_some(self.sliding - amplitude));
+        }
+        [places.iter().copied().fold(f64::INFINITY, f64::min), places.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
+    }
+
     /// The sliding at its end, m.
     pub fn final_sliding(&self) -> f64 {
         self.placement(self.end(), self.duration).sliding
@@ -147,5 +158,10 @@ mod tests {
         assert!((now.sliding_rate - (now.sliding - before.sliding) / dt).abs() < 1e-14);
         assert!((phase.final_sliding() - (0.4 + 2e-4)).abs() < 1e-16);
         assert!((now.approach - 1.1 / 3.0).abs() < 1e-15);
+        assert_eq!(phase.sliding_range(), [0.4 - 2e-4, 0.4 + 2e-4]);
+        let quarter = Phase { motion: Motion::Sinusoid { amplitude: -0.1, cycles: 0.3 }, ..phase.clone() };
+        assert_eq!(quarter.sliding_range(), [0.4 - 0.1, 0.4]);
+        let back = Phase { motion: Motion::Velocity(-0.1), ..phase };
+        assert!((back.sliding_range()[0] - 0.1).abs() < 1e-15 && back.sliding_range()[1] == 0.4);
     }
 }

@@ -31,12 +31,36 @@ where
     String::from_utf8(bytes).map_err(|_| Error::Internal("a text was garbled on its way to another rank".into()))
 }
 
+/// Gives every rank the numbers that `make` returns on rank 0, or its error. Collective.
+pub fn share_numbers<C>(comm: &C, make: impl FnOnce() -> Result<Vec<f64>>) -> Result<Vec<f64>>
+where
+    C: Communicator + CommunicatorCollectives,
+{
+    let mine = if comm.rank() == 0 { make() } else { Ok(Vec::new()) };
+    let mut numbers = agree(comm, mine)?;
+    let mut length = numbers.len();
+    comm.process_at_rank(0).broadcast_into(&mut length);
+    numbers.resize(length, 0.0);
+    comm.process_at_rank(0).broadcast_into(&mut numbers[..]);
+    Ok(numbers)
+}
+
+/// Whether any rank says yes. Collective.
+pub fn any<C: Communicator + CommunicatorCollectives>(comm: &C, mine: bool) -> bool {
+    let mut somewhere = false;
+    comm.all_reduce_into(&mine, &mut somewhere, SystemOperation::logical_or());
+    somewhere
+}
+
 /// Gives every rank the bytes of rank `root`. Collective.
 pub fn broadcast<C: Communicator + CommunicatorCollectives>(comm: &C, root: i32, bytes: &mut Vec<u8>) {
     let mut length = bytes.len();
     comm.process_at_rank(root).broadcast_into(&mut length);
     bytes.resize(length, 0);
-    comm.process_at_rank(root).broadcast_into(&mut bytes[..]);
+    // MPI counts with 32 bits.
+    for piece in bytes.chunks_mut(1 << 30) {
+        comm.process_at_rank(root).broadcast_into(piece);
+    }
 }
 
 /// The kind of an error and its texts, separated by zeros.
@@ -49,7 +73,9 @@ fn encode(error: &Error) -> Vec<u8> {
         Error::Usage(text) => ("usage", vec![text.clone()]),
         Error::Solver(text) => ("solver", vec![text.clone()]),
         Error::Domain(text) => ("domain", vec![text.clone()]),
+        Error::Mismatch(text) => ("mismatch", vec![text.clone()]),
         Error::Internal(text) => ("internal", vec![text.clone()]),
+        Error::Stopped(text) => ("stopped", vec![text.clone()]),
     };
     std::iter::once(kind.to_owned()).chain(texts).collect::<Vec<_>>().join("\0").into_bytes()
 }
@@ -65,6 +91,8 @@ fn decode(bytes: &[u8]) -> Error {
         "usage" => Error::Usage(next()),
         "solver" => Error::Solver(next()),
         "domain" => Error::Domain(next()),
+        "mismatch" => Error::Mismatch(next()),
+        "stopped" => Error::Stopped(next()),
         _ => Error::Internal(next()),
     }
 }
@@ -81,7 +109,9 @@ mod tests {
             Error::Usage("u".into()),
             Error::Solver("s".into()),
             Error::Domain("d".into()),
+            Error::Mismatch("m".into()),
             Error::Internal("i".into()),
+            Error::Stopped("t".into()),
         ] {
             assert_eq!(decode(&encode(&error)), error);
         }

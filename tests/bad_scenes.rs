@@ -1,21 +1,10 @@
 //! Every scene of `tests/scenes/bad/` is refused with exactly the message that it carries.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
-use std::path::Path;
-
-use mpjr::error::Result;
-use mpjr::scene::{Scene, Source, read};
-
-/// Reads the mesh where the scene names a file.
-fn mesh_of(scene: &Scene, file: &Path) -> Result<()> {
-    match scene.layer() {
-        Some(_) => Ok(()),
-        None => mpjr::composition::mesh_alone(scene, file).map(|_| ()),
-    }
-}
+use mpjr::composition;
+use mpjr::scene::{Source, read};
 
 #[test]
 fn each_bad_scene_gives_its_message() {
@@ -24,9 +13,13 @@ fn each_bad_scene_gives_its_message() {
     let mut wrong = Vec::new();
     for scene in &scenes {
         let source = Source { file: scene.file.clone(), overrides: scene.overrides() };
-        // What is wrong with a mesh shows when it is read.
-        let outcome = read(&scene.text, &source).and_then(|read| mesh_of(&read, &scene.file));
-        let (message, exit) = match outcome {
+        // What `mpjr check` does: the scene, then what it needs of other files.
+        let checked = read(&scene.text, &source).and_then(|read| {
+            let elevations = composition::elevations(&read, &scene.file)?;
+            let outline = composition::outline(&read, &scene.file)?;
+            composition::shape(&read, &scene.file, &elevations, outline.face).map(|_| ())
+        });
+        let (message, exit) = match checked {
             Ok(_) => ("(accepted)".to_owned(), 0),
             Err(error) => {
                 let message = error.to_string();

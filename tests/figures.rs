@@ -1,9 +1,9 @@
 //! Figures are written whole, twice, and over nothing that is not theirs.
 #![allow(clippy::unwrap_used)]
 
-use mpjr::plot::material::{MaterialFigures, Reference, Series};
+use mpjr::plot::material::{MaterialFigures, Reference, Series, poisson_figure};
 use mpjr::plot::{Axis, Curve, Figure, PALETTE, Stroke};
-use mpjr::rheology::{Arm, Band, Fractional, Prony};
+use mpjr::rheology::{Arm, Band, Fractional, Poisson, Prony};
 
 fn figure(x: Axis, y: Axis, points: Vec<(f64, f64)>) -> Figure {
     let curve =
@@ -47,6 +47,22 @@ fn figure_3_is_drawn_as_png_and_svg() {
             }
         }
     }
+}
+
+#[test]
+fn the_poisson_ratio_is_drawn() {
+    let shear = Prony { arms: vec![Arm { weight: 0.579, time: 0.817 }] };
+    let poisson = |bulk: &Prony| Poisson { instantaneous: 0.3, shear: shear.clone(), bulk: bulk.clone() };
+    let (constant, stays) = (poisson(&shear), poisson(&Prony::default()));
+    let materials = [("constant ratio", &constant), ("constant bulk modulus", &stays)];
+    let figure = poisson_figure(&materials, Band::new(0.1, 10.0).unwrap());
+    let ends = |curve: usize| [figure.curves[curve].points[0].1, figure.curves[curve].points[399].1];
+    assert_eq!(ends(0), [0.3, 0.3]);
+    assert!((ends(1)[0] - 0.3).abs() < 1e-3 && ends(1)[1] > 0.4 && ends(1)[1] < 0.5);
+    let directory = tempfile::tempdir().unwrap();
+    let [_, svg] = figure.write(&directory.path().join("poisson")).unwrap();
+    let text = std::fs::read_to_string(svg).unwrap();
+    assert!(text.contains("constant bulk modulus") && text.contains("times of the loading history"));
 }
 
 /// No data, one point, equal points, numbers that no axis has: a figure all the same.

@@ -225,13 +225,16 @@ fn bad_data_are_refused_with_their_line() {
         let output = mpjr(directory.path(), "fit data.csv --arms 3 --out material.toml");
         let message = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{text:?}: {message}");
-        assert!(message.starts_with(&format!("data.csv: {line}: ")) && message.contains(reason), "{text:?}: {message}");
+        assert!(
+            message.starts_with(&format!("mpjr: data.csv: {line}: ")) && message.contains(reason),
+            "{text:?}: {message}"
+        );
         assert_eq!(message.lines().count(), 1);
         assert!(output.stdout.is_empty() && !directory.path().join("material.toml").exists());
     }
     std::fs::write(directory.path().join("data.csv"), b"1,2\n2,\xff\n").unwrap();
     let output = mpjr(directory.path(), "fit data.csv --arms 1");
-    assert_eq!(String::from_utf8(output.stderr).unwrap(), "data.csv: line 2: this is not text in UTF-8\n");
+    assert_eq!(String::from_utf8(output.stderr).unwrap(), "mpjr: data.csv: line 2: this is not text in UTF-8\n");
     assert_eq!(mpjr(directory.path(), "fit absent.csv --arms 1").status.code(), Some(4));
 }
 

@@ -2,7 +2,6 @@
 //! again.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use std::io::{Read, Write};

@@ -1,7 +1,6 @@
 //! The file against CONTRACT.md: names, shapes, types, attributes, and what is refused.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use std::path::Path;
@@ -106,7 +105,7 @@ fn layout_is_that_of_the_contract() {
         ("time", "s"),
         ("approach sliding max_penetration", "m"),
         ("normal_force tangential_force hysteretic_force", "N/m"),
-        ("contact_fraction stick_fraction", "1"),
+        ("contact_fraction stick_fraction traction_oscillation", "1"),
         ("energy/external_work energy/stored energy/viscoelastic_dissipation energy/friction_dissipation", "J/m"),
         ("energy/penalty energy/imbalance", "J/m"),
     ] {

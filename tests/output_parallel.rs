@@ -1,7 +1,6 @@
 //! Bulk fields, written by 1 to 4 ranks into the same file.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[allow(dead_code)]
 mod common;
 
 use std::path::Path;

@@ -7,7 +7,8 @@
 //! ```
 #![allow(clippy::unwrap_used)]
 
-use mpjr::rheology::{Arm, Band, Fractional, Memory, Prony, Shift};
+use mpjr::rheology::prony::common_times;
+use mpjr::rheology::{Arm, Band, Fractional, Memory, Poisson, Prony, Shift};
 use nalgebra::Complex;
 
 /// Table 1, three arms.
@@ -260,4 +261,62 @@ fn wlf_and_arrhenius_shift_the_times_alone() {
     close(cold.relaxation(0.7 * factor), prony.relaxation(0.7), 1e-14);
     close(cold.complex_modulus(0.7 / factor).im, prony.complex_modulus(0.7).im, 1e-13);
     assert_eq!(cold.long_term(), prony.long_term());
+}
+
+fn prony(arms: &[(f64, f64)]) -> Prony {
+    Prony { arms: arms.iter().map(|&(weight, time)| Arm { weight, time }).collect() }
+}
+
+/// nu = (3 K - 2 G)/(6 K + 2 G): constant where K relaxes with G, towards 1/2 where it stays, down where only K relaxes.
+#[test]
+fn poisson_ratio_of_relaxing_moduli() {
+    let poisson = |shear: Prony, bulk: Prony| Poisson { instantaneous: 0.3, shear, bulk };
+    let constant = poisson(eva(), eva());
+    let stays = poisson(eva(), Prony::default());
+    let bulk = poisson(Prony::default(), prony(&[(0.5, 2.0)]));
+    for t in [0.0, 0.1, 3.0, 1e9, f64::INFINITY] {
+        close(constant.at(t), 0.3, 1e-15);
+        // K/G = 2.6/1.2 where nu = 0.3.
+        let quotient = |k: f64, g: f64| 2.6 / 1.2 * k / g;
+        let nu = |q: f64| (3.0 * q - 2.0) / (6.0 * q + 2.0);
+        close(stays.at(t), nu(quotient(1.0, eva().relaxation(t))), 1e-14);
+        close(bulk.at(t), nu(quotient(0.5 + 0.5 * (-t / 2.0).exp(), 1.0)), 1e-14);
+    }
+    assert!(stays.at(1.0) > 0.3 && bulk.at(1.0) < 0.3);
+    let band = Band::new(1e-3, 1e3).unwrap();
+    assert_eq!((constant.leaves(band), stays.leaves(band), bulk.leaves(band)), (None, None, None));
+}
+
+/// Moduli that relax to nothing: 1/2 where G is gone first, -1 where K is, and the ratio of the slowest arms else.
+#[test]
+fn poisson_ratio_of_what_flows() {
+    let poisson = |shear: &[(f64, f64)], bulk: &[(f64, f64)]| Poisson {
+        instantaneous: 0.25,
+        shear: prony(shear),
+        bulk: prony(bulk),
+    };
+    let band = Band::new(1e-3, 100.0).unwrap();
+    let liquid = poisson(&[(1.0, 0.1)], &[]);
+    close(liquid.at(f64::INFINITY), 0.5, 1e-15);
+    assert!(liquid.leaves(band).is_some_and(|(t, nu)| t > 1.0 && nu > 0.5 - 1e-12));
+    assert!(liquid.leaves(Band::new(1e-3, 1.0).unwrap()).is_none());
+    let foam = poisson(&[(0.5, 1.0)], &[(1.0, 0.1)]);
+    close(foam.at(f64::INFINITY), -1.0, 1e-15);
+    assert!(foam.leaves(band).is_some_and(|(t, nu)| t > 1.0 && nu < -1.0 + 1e-12));
+    // K/G = 5/3 at first, and 5/3 of 0.4/0.8 in the end, long after both are below the smallest number.
+    let both = poisson(&[(0.2, 0.1), (0.8, 2.0)], &[(0.6, 0.3), (0.4, 2.0)]);
+    for t in [1e4, 1e300, f64::INFINITY] {
+        let quotient = 5.0 / 3.0 * 0.5;
+        close(both.at(t), (3.0 * quotient - 2.0) / (6.0 * quotient + 2.0), 1e-13);
+    }
+    assert!(both.leaves(Band::new(1e-3, 1e6).unwrap()).is_none());
+}
+
+#[test]
+fn series_over_common_times() {
+    let (one, other) = (prony(&[(0.3, 2.0), (0.1, 0.5), (0.2, 2.0)]), prony(&[(0.4, 1.0), (0.1, 2.0)]));
+    let times = common_times(&[&one, &other]);
+    assert_eq!(times, [0.5, 1.0, 2.0]);
+    assert_eq!(one.weights_over(&times), [0.1, 0.0, 0.5]);
+    assert_eq!(other.weights_over(&times), [0.0, 0.4, 0.1]);
 }

@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::petsc::{Step, Vector};
 use crate::rheology::{Factors, Memory};
+use crate::snapshot::{NaturalOrder, Snapshot};
 
 /// A Prony series over a list of arms.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,6 +109,22 @@ impl Arms {
         self.work.add(-1.0, &self.previous)?;
         for (elongation, factor) in self.elongations.iter_mut().zip(&factors) {
             elongation.combine(factor.gain, &self.work, factor.decay)?;
+        }
+        self.previous.copy_from(u)?;
+        self.carried.dt = f64::NAN;
+        Ok(())
+    }
+
+    /// Adds the elongations to a snapshot.
+    pub fn save(&self, order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()> {
+        let mut arms = self.elongations.iter().enumerate();
+        arms.try_for_each(|(index, elongation)| order.save(format!("arm-{index}"), elongation, snapshot))
+    }
+
+    /// Takes the elongations at the accepted state `u` from a snapshot.
+    pub fn restore(&mut self, order: &NaturalOrder, snapshot: &Snapshot, u: &Vector) -> Result<()> {
+        for (index, elongation) in self.elongations.iter_mut().enumerate() {
+            order.restore(&format!("arm-{index}"), elongation, snapshot)?;
         }
         self.previous.copy_from(u)?;
         self.carried.dt = f64::NAN;

@@ -15,6 +15,7 @@ mod arms;
 use crate::error::Result;
 use crate::petsc::{Matrix, Step, Vector};
 use crate::rheology::Memory;
+use crate::snapshot::{NaturalOrder, Snapshot};
 
 pub use arms::{Arms, Series};
 
@@ -86,6 +87,16 @@ impl Bulk {
     /// Takes the memory to the end of an accepted step.
     pub fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {
         self.arms.as_mut().map_or(Ok(()), |arms| arms.commit(step, u))
+    }
+
+    /// Adds the memory to a snapshot.
+    pub fn save(&self, order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()> {
+        self.arms.as_ref().map_or(Ok(()), |arms| arms.save(order, snapshot))
+    }
+
+    /// Takes the memory at the accepted state `u` from a snapshot.
+    pub fn restore(&mut self, order: &NaturalOrder, snapshot: &Snapshot, u: &Vector) -> Result<()> {
+        self.arms.as_mut().map_or(Ok(()), |arms| arms.restore(order, snapshot, u))
     }
 
     /// Gives each part's effective displacement y_p = mu_0 u + sum mu_i z_i at the accepted state `u`, m.

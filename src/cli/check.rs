@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{is_first_process, summary};
+use super::{is_first_process, profile, summary};
 use crate::composition;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::scene::{self, Source};
 
 /// The arguments of `mpjr check`.
@@ -21,17 +21,18 @@ pub struct CheckArguments {
 
 /// Reads and checks the scene and prints what it resolves to.
 pub fn run(arguments: &CheckArguments) -> Result<()> {
-    let file = &arguments.scene;
-    let text = std::fs::read_to_string(file).map_err(|error| Error::file(file, format!("cannot be read: {error}")))?;
-    let scene = scene::read(&text, &Source { file: file.clone(), overrides: arguments.set.clone() })?;
-    // A layer's mesh has no more to say than its scene.
-    let mesh = match scene.layer() {
-        Some(_) => None,
-        None => Some(composition::mesh_alone(&scene, file)?),
-    };
-    if is_first_process() {
-        println!("{}", scene.to_toml().trim_end());
-        println!("\n{}", summary::plan(&scene, mesh.as_ref()));
+    // It needs no solver, so that one process does it for all.
+    if !is_first_process() {
+        return Ok(());
     }
+    let file = &arguments.scene;
+    let source = Source { file: file.clone(), overrides: arguments.set.clone() };
+    let scene = scene::read(&scene::open(file)?, &source)?;
+    let elevations = composition::elevations(&scene, file)?;
+    let outline = composition::outline(&scene, file)?;
+    let shape = composition::shape(&scene, file, &elevations, outline.face)?;
+    println!("{}", scene.to_toml().trim_end());
+    println!("\n{}", profile::describe(&scene, &shape, outline.face));
+    println!("{}", summary::plan(&scene, &outline));
     Ok(())
 }

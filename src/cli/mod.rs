@@ -1,15 +1,25 @@
 //! The commands of `mpjr`, one module each.
 
+mod case;
 mod check;
 mod fit;
+mod interrupt;
+mod material;
+mod origin;
+mod plot;
+mod profile;
 mod progress;
 mod record;
 mod run;
 mod summary;
+mod sweep;
+mod verify;
 
 use clap::{Parser, Subcommand};
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// Transient viscoelastic contact with friction, by interface finite elements with embedded profiles (MPJR).
 ///
@@ -25,14 +35,21 @@ struct Arguments {
 enum Command {
     /// Solve one scene and write its HDF5 file
     Run(run::RunArguments),
+    /// Run every case of a sweep; cases that are complete are not run again
+    Sweep(sweep::SweepArguments),
     /// Read and check a scene, and say what a run would do; solves nothing
     Check(check::CheckArguments),
     /// Identify a Prony series from measured data or from the fractional power law
     Fit(fit::FitArgs),
+    /// Solve scenes with a known answer and compare; the exit code is 1 if any differs by more than its tolerance
+    Verify(verify::VerifyArguments),
+    /// Draw figures from results
+    Plot(plot::PlotArguments),
 }
 
 /// Reads the command line, does what it says, and returns the exit code: 0 done, 2 scene or command line wrong,
-/// 3 no convergence, 4 a file could not be read or written, 1 anything else.
+/// 3 no convergence, 4 a file could not be read or written, 5 stopped by a signal, 1 anything else, such as a failed
+/// `verify`.
 pub fn main() -> i32 {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -41,13 +58,21 @@ pub fn main() -> i32 {
                 // Nothing is left to do when even the terminal cannot be written to.
                 let _ = message.print();
             }
-            return if message.use_stderr() { 2 } else { 0 };
+            return exit_code(if message.use_stderr() { 2 } else { 0 });
         }
     };
     let outcome: Result<()> = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
-        // It needs no solver, so that one process does it for all.
+        // These need no solver, so that one process does it for all.
+        Command::Plot(arguments) => {
+            if is_first_process() {
+                plot::run(&arguments)
+            } else {
+                Ok(())
+            }
+        }
         Command::Fit(arguments) => {
             if is_first_process() {
                 fit::run(&arguments)
@@ -55,15 +80,34 @@ pub fn main() -> i32 {
                 Ok(())
             }
         }
+        Command::Verify(arguments) => verify::run(&arguments),
     };
     match outcome {
         Ok(()) => 0,
+        // Defects may be this process's alone; of anything else the first process tells.
+        Err(error @ Error::Internal(_)) if !is_first_process() => error.exit_code(),
         Err(error) => {
             if is_first_process() {
                 eprintln!("mpjr: {error}");
             }
-            error.exit_code()
+            exit_code(error.exit_code())
         }
+    }
+}
+
+/// The exit code of an outcome that all processes share. Only the first process tells it: a launcher ends all of them
+/// as soon as one fails, and would cut off the message of the first.
+fn exit_code(code: i32) -> i32 {
+    if is_first_process() { code } else { 0 }
+}
+
+/// Ends all ranks where one has met an error inside a library, for which the others may wait.
+fn abort_if_alone(world: &SimpleCommunicator, outcome: &Result<()>) {
+    if let Err(error @ Error::Internal(_)) = outcome
+        && world.size() > 1
+    {
+        eprintln!("mpjr: rank {}: {error}", world.rank());
+        world.abort(error.exit_code());
     }
 }
 

@@ -1,9 +1,13 @@
 //! The progress of a run: a bar on a terminal, plain lines otherwise.
 
+use std::cell::RefCell;
 use std::io::IsTerminal;
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::sweep::claim::Claim;
 
 /// Plain lines come no closer than this, but for the ends of phases.
 const LINE_EVERY: Duration = Duration::from_secs(5);
@@ -12,6 +16,13 @@ const LINE_EVERY: Duration = Duration::from_secs(5);
 pub enum Progress {
     /// On ranks that show nothing.
     Silent,
+    /// In the claim file of a case of a sweep, for the board to show.
+    Claim {
+        /// What is being done.
+        claim: Rc<RefCell<Claim>>,
+        /// Planned steps in all.
+        total: usize,
+    },
     /// A bar that is redrawn.
     Bar(ProgressBar),
     /// A line now and then.
@@ -51,28 +62,36 @@ impl Progress {
             return Self::Lines { total, last: Instant::now() };
         };
         let bar = ProgressBar::with_draw_target(Some(total as u64), target);
+        // Within 80 columns: under mpirun the width is not known, and a line that wraps leaves pieces behind.
         // A template that is wrong is a defect that the default one survives.
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len}  {msg}  {elapsed} (left {eta})") {
+        if let Ok(style) = ProgressStyle::with_template("{bar:16} {pos}/{len}  {eta:>3} left  {msg}") {
             bar.set_style(style);
         }
+        bar.tick();
         Self::Bar(bar)
+    }
+
+    /// For a case of a sweep; silent on the ranks that have no claim.
+    pub fn claim(claim: Option<Rc<RefCell<Claim>>>, total: usize) -> Self {
+        claim.map_or(Self::Silent, |claim| Self::Claim { claim, total })
     }
 
     /// Shows a step.
     pub fn show(&mut self, stage: &Stage<'_>) {
-        let text = format!(
-            "{} t = {:.4e} s  N = {:.5e}  Q = {:.5e} N/m  {} Newton",
-            stage.phase, stage.time, stage.normal_force, stage.tangential_force, stage.newton
-        );
+        let Stage { done, phase, time, normal_force, tangential_force, newton, phase_end } = *stage;
         match self {
             Self::Silent => {}
+            Self::Claim { claim, total } => claim.borrow_mut().tell(stage.done, *total),
             Self::Bar(bar) => {
-                bar.set_position(stage.done as u64);
-                bar.set_message(text);
+                bar.set_position(done as u64);
+                bar.set_message(format!("{phase:.10}  N = {normal_force:.3e}  Q = {tangential_force:.3e} N/m"));
             }
             Self::Lines { total, last } => {
-                if stage.phase_end || last.elapsed() >= LINE_EVERY {
-                    println!("{}/{total}  {text}", stage.done);
+                if phase_end || last.elapsed() >= LINE_EVERY {
+                    println!(
+                        "{done}/{total}  {phase}  t = {time:.4e} s  N = {normal_force:.5e}  Q = {tangential_force:.5e} N/m  \
+                         {newton} Newton"
+                    );
                     *last = Instant::now();
                 }
             }
@@ -89,7 +108,7 @@ impl Progress {
 
 /// Where a bar can be drawn: standard error when it is a terminal; under Open MPI's mpirun, which gives its children a
 /// pseudo-terminal as standard output in any case, that output when mpirun's own is a terminal.
-fn terminal() -> Option<ProgressDrawTarget> {
+pub fn terminal() -> Option<ProgressDrawTarget> {
     if std::io::stderr().is_terminal() {
         return Some(ProgressDrawTarget::stderr());
     }

@@ -1,14 +1,22 @@
 //! Takes what a run reports to its file and its terminal.
 
+use std::path::PathBuf;
+
 use mpi::topology::SimpleCommunicator;
 
+use super::interrupt::Interrupt;
+use super::origin::{save_counts, save_rows};
 use super::progress::{Progress, Stage};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::loading::Phase;
 use crate::output::bulk::Frame;
-use crate::output::{self, HistoryRow, InterfaceFrame, Recorder, Status};
-use crate::parallel::agree;
-use crate::solve::{Observer, Report};
+use crate::output::checkpoint::{self, Checkpoint};
+use crate::output::{self, HistoryRow, Recorder, Status};
+use crate::parallel::{agree, any};
+use crate::petsc::Vector;
+use crate::snapshot::Snapshot;
+use crate::solution;
+use crate::solve::{Counts, Observer, Report, TransientProblem};
 
 /// The observer of a run; only rank 0 has a recorder.
 pub struct Recording<'a> {
@@ -18,21 +26,82 @@ pub struct Recording<'a> {
     interface_every: usize,
     phases: &'a [Phase],
     progress: Progress,
+    checkpoints: Checkpoints<'a>,
     planned_steps: usize,
     last: HistoryRow,
 }
 
+/// When and where the state of a run is kept.
+pub struct Checkpoints<'a> {
+    /// The result file that they belong to.
+    pub results: PathBuf,
+    /// Planned steps between them; 0 = only on a signal.
+    pub every: usize,
+    /// The signal.
+    pub interrupt: &'a Interrupt,
+    /// The resolved scene.
+    pub scene: String,
+    /// When the run began, as the result file has it.
+    pub started: String,
+}
+
 impl<'a> Recording<'a> {
-    /// Records into `recorder` and shows on `progress`.
+    /// Records into the recorder of the communicator's rank 0, an interface profile after so many planned steps of the
+    /// phases, and shows on `progress`.
     pub fn new(
-        world: &'a SimpleCommunicator,
-        recorder: Option<Recorder>,
-        interface_every: usize,
-        phases: &'a [Phase],
+        (world, recorder): (&'a SimpleCommunicator, Option<Recorder>),
+        (interface_every, phases): (usize, &'a [Phase]),
+        checkpoints: Checkpoints<'a>,
         progress: Progress,
     ) -> Self {
         let last = HistoryRow::default();
-        Self { world, recorder, interface_every, phases, progress, planned_steps: 0, last }
+        Self { world, recorder, interface_every, phases, progress, checkpoints, planned_steps: 0, last }
+    }
+
+    /// The same after so many planned steps.
+    pub fn after(self, planned_steps: usize) -> Self {
+        Self { planned_steps, ..self }
+    }
+
+    /// Keeps the state at the end of the run, whose solution is `u`. Collective.
+    pub fn keep_state(&self, problem: &mut dyn TransientProblem, u: &Vector, counts: Counts) -> Result<()> {
+        let mut snapshot = Snapshot::default();
+        problem.save(u, &mut snapshot)?;
+        self.write(snapshot, counts)
+    }
+
+    /// Keeps the state where one is due, and stops the run where that is asked for.
+    fn checkpoint(&self, report: &mut Report<'_>) -> Result<()> {
+        let Some(next) = report.next else { return Ok(()) };
+        let stop = any(self.world, self.checkpoints.interrupt.requested());
+        let due = report.planned && self.planned_steps.checked_rem(self.checkpoints.every) == Some(0);
+        if !stop && !due {
+            return Ok(());
+        }
+        let mut snapshot = Snapshot::default();
+        report.problem.save(report.u, &mut snapshot)?;
+        next.save(&mut snapshot);
+        self.write(snapshot, report.counts)?;
+        if !stop {
+            return Ok(());
+        }
+        Err(Error::Stopped(format!(
+            "stopped by a signal at t = {:.6} s; {} holds the state: go on with --resume",
+            report.time,
+            checkpoint::beside(&self.checkpoints.results).display()
+        )))
+    }
+
+    /// Writes the checkpoint, after all rows that it counts.
+    fn write(&self, mut snapshot: Snapshot, counts: Counts) -> Result<()> {
+        save_counts(&mut snapshot, counts, self.planned_steps);
+        let mine = self.recorder.as_ref().map_or(Ok(()), |recorder| {
+            save_rows(&mut snapshot, recorder.sync()?);
+            let Checkpoints { results, scene, started, .. } = &self.checkpoints;
+            let fields = snapshot.fields().to_vec();
+            checkpoint::write(results, &Checkpoint { scene: scene.clone(), started: started.clone(), fields })
+        });
+        agree(self.world, mine)
     }
 
     /// Closes the file with `status`; also gives the last row of the history.
@@ -45,43 +114,18 @@ impl<'a> Recording<'a> {
     /// The step's row of the history, and its interface profile where one is due.
     fn record(&mut self, report: &mut Report<'_>) -> Result<()> {
         let Some(recorder) = &self.recorder else { return Ok(()) };
-        let mut contact = report.problem.contact()?;
-        let totals = contact.totals()?;
-        self.last = HistoryRow {
-            time: report.time,
-            phase: report.phase,
-            approach: contact.placement.approach,
-            sliding: contact.placement.sliding,
-            normal_force: totals.normal_force,
-            tangential_force: totals.tangential_force,
-            hysteretic_force: totals.hysteretic_force,
-            contact_fraction: totals.contact_fraction,
-            stick_fraction: totals.stick_fraction,
-            max_penetration: totals.max_penetration,
-            newton_iterations: report.newton,
-            ..HistoryRow::default()
-        };
+        self.last = solution::row(report)?;
         recorder.history(self.last)?;
         let due = report.planned && self.planned_steps.checked_rem(self.interface_every) == Some(0);
         if due || report.phase_end {
-            let fields = contact.fields()?;
-            let component = |i: usize| contact.surface.displacement.iter().skip(i).step_by(2).copied().collect();
-            recorder.interface(InterfaceFrame {
-                time: report.time,
-                pressure: fields.pressure,
-                shear: fields.shear,
-                gap: fields.gap,
-                slip_rate: fields.slip_rate,
-                displacement_x: component(0),
-                displacement_z: component(1),
-            })?;
+            recorder.interface(solution::frame(report)?)?;
         }
         self.progress.show(&Stage {
             done: self.planned_steps,
             phase: &self.phases[report.phase].name,
             time: report.time,
-            normal_force: totals.normal_force,
-            tangential_force: totals.tangential_force,
+            normal_force: self.last.normal_force,
+            tangential_force: self.last.tangential_force,
             newton: report.newton,
             phase_end: report.phase_end,
         });
@@ -104,6 +148,6 @@ impl Observer for Recording<'_> {
             };
             output::bulk::write(self.world, self.recorder.as_ref(), &frame)?;
         }
-        Ok(())
+        self.checkpoint(&mut report)
     }
 }

@@ -3,23 +3,24 @@
 use std::fmt::Write;
 use std::time::Duration;
 
-use crate::mesh::{Cell, Mesh};
+use super::material;
+use crate::composition::{self, Form, Outline, Stretch};
 use crate::output::{HistoryRow, Status};
 use crate::petsc;
-use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides};
+use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
 use crate::solve::Counts;
 
 /// What is modelled and what is not: (modelled, not modelled).
 pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
     let (mut yes, mut no) = (Vec::new(), Vec::new());
-    for material in &scene.materials {
-        let place = match (&material.region, scene.materials.len()) {
-            (Some(region), _) => format!("{region}: "),
-            (None, 1) => String::new(),
-            (None, _) => material.thickness.map_or("below: ".to_owned(), |thickness| format!("{thickness} m: ")),
-        };
+    for (place, material) in material::placed(scene) {
         let arms = material.arms.len();
         match (arms, material.poisson_rule) {
+            (_, Some(PoissonRule::BulkArms)) => {
+                let bulk = material.bulk_arms.len();
+                let text = format!("{arms} arm(s) of the shear modulus, {bulk} of the bulk modulus");
+                yes.push(format!("{place}viscoelastic memory: {text}"));
+            }
             (0, _) => no.push(format!("{place}memory (linear elastic)")),
             (_, Some(PoissonRule::ConstantBulkModulus)) => {
                 let text = "arm(s) of the shear modulus, constant bulk modulus";
@@ -34,8 +35,12 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
         }
         None => no.push("friction (symmetric solver)".to_owned()),
     }
+    let softer = scene.layer().map_or_else(String::new, |layer| {
+        let added = added_compliance(scene.contact.penalty, layer, &scene.materials);
+        format!(" ({added:.2e} of the compliance to the wave the layer is stiffest to)")
+    });
     yes.push(format!(
-        "contact: penalty {:.3e} Pa/m, {} quadrature",
+        "contact: penalty {:.3e} Pa/m{softer}, {} quadrature",
         scene.contact.penalty,
         match scene.contact.quadrature {
             Quadrature::Nodal => "nodal",
@@ -51,19 +56,16 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
     (yes, no)
 }
 
-/// What `mpjr check` prints after the resolved scene; `mesh` where it comes from a file.
-pub fn plan(scene: &Scene, mesh: Option<&Mesh>) -> String {
+/// What `mpjr check` prints after the resolved scene.
+pub fn plan(scene: &Scene, outline: &Outline) -> String {
     let (yes, no) = modelled(scene);
-    let unknowns = match (scene.layer(), mesh) {
-        (Some(layer), _) => layer.unknowns(),
-        (None, mesh) => mesh.map_or(0, Mesh::free_components),
-    };
-    let estimate = Estimate::of(scene, unknowns);
+    let estimate = Estimate::of(scene, outline);
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "modelled:      {}", yes.join("\n               "));
     let _ = writeln!(text, "not modelled:  {}", no.join("\n               "));
-    let _ = writeln!(text, "mesh:          {}, {unknowns} unknowns", extent(scene, mesh));
+    text += &material::lines(scene);
+    let _ = writeln!(text, "mesh:          {}, {} unknowns", extent(scene, outline), outline.unknowns);
     let _ = writeln!(
         text,
         "loading:       {} phase(s), {} steps, {:.6} s",
@@ -71,10 +73,7 @@ pub fn plan(scene: &Scene, mesh: Option<&Mesh>) -> String {
         scene.steps(),
         scene.duration()
     );
-    let _ = writeln!(
-        text,
-        "strategy:      monolithic: all unknowns in one sparse system, factorised at each Newton iteration"
-    );
+    let _ = writeln!(text, "strategy:      {}", strategy(scene));
     let _ = write!(
         text,
         "estimate:      {} per step, {} in all on one core; {:.1} GB of memory",
@@ -86,7 +85,7 @@ pub fn plan(scene: &Scene, mesh: Option<&Mesh>) -> String {
 }
 
 /// The mesh in words.
-fn extent(scene: &Scene, mesh: Option<&Mesh>) -> String {
+fn extent(scene: &Scene, outline: &Outline) -> String {
     if let Some(layer) = scene.layer() {
         let sides = match layer.sides {
             Sides::Periodic => "periodic",
@@ -96,19 +95,15 @@ fn extent(scene: &Scene, mesh: Option<&Mesh>) -> String {
         };
         return format!("{} x {} cells, {sides} sides", layer.cells[0], layer.cells[1]);
     }
-    let Some(mesh) = mesh else { return String::new() };
-    let triangles = mesh.cells.iter().filter(|cell| matches!(cell, Cell::Triangle(_))).count();
-    let quadrilaterals = mesh.cells.len() - triangles;
+    let [quadrilaterals, triangles] = outline.cells;
     let lock = match triangles > 0 && scene.materials.iter().any(|material| material.poisson_ratio > 0.45) {
         true => " (they lock near a Poisson ratio of 0.5)",
         false => "",
     };
-    let from = mesh.face.x.first().copied().unwrap_or(0.0);
-    let to = mesh.face.x.last().copied().unwrap_or(0.0);
+    let Stretch { from, to, edges, .. } = outline.face;
     format!(
-        "{quadrilaterals} quadrilaterals, {triangles} triangles{lock}, contact face of {} edges from x = {from:.6} to \
-         {to:.6} m",
-        mesh.face.edges.len()
+        "{quadrilaterals} quadrilaterals, {triangles} triangles{lock}, contact face of {edges} edges from x = {from:.6} \
+         to {to:.6} m"
     )
 }
 
@@ -131,7 +126,7 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     let Outcome { status, ranks, setup, total, counts } = outcome;
     let (yes, no) = modelled(scene);
     let blas = match petsc::blas_library() {
-        "reference" => "reference BLAS (install libopenblas0-pthread: 2 to 5 times faster)",
+        "reference" => "the reference (OpenBLAS is faster: Debian's libopenblas0-pthread)",
         name => name,
     };
     let linear = counts.total.saturating_sub(counts.assembly + counts.output);
@@ -143,8 +138,9 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{:<15}{} at t = {:.6} s", "status:", status.as_str(), last.time);
-    let _ = writeln!(text, "{:<15}{}", "modelled:", yes.join("; "));
-    let _ = writeln!(text, "{:<15}{}", "not modelled:", no.join("; "));
+    let _ = writeln!(text, "{:<15}{}", "modelled:", yes.join("\n               "));
+    let _ = writeln!(text, "{:<15}{}", "not modelled:", no.join("\n               "));
+    text += &material::lines(scene);
     let _ = writeln!(
         text,
         "{:<15}N = {:.6e}  Q = {:.6e}  hysteretic = {:.6e} N/m",
@@ -152,25 +148,45 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     );
     let _ = writeln!(
         text,
-        "{:<15}{:.4} of the face, {:.4} of it sticking; largest penetration {:.3e} m",
+        "{:<15}{:.4} of the face, {:.4} of it sticking; penetration {:.1e} m",
         "final contact:", last.contact_fraction, last.stick_fraction, last.max_penetration
     );
     let _ = writeln!(text, "{:<15}{} steps, {} Newton iterations{pieces}", "work:", counts.steps, counts.newton);
     let _ = writeln!(
         text,
-        "{:<15}{} on {ranks} rank(s): set-up {}, assembly {}, linear solver {}, output {}; {blas}; peak {:.2} GB a rank",
+        "{:<15}{} on {ranks} rank(s): set-up {}, assembly {},\n{:<15}linear solver {}, output {}",
         "time:",
         duration(total),
         duration(setup),
         duration(&counts.assembly),
+        "",
         duration(&linear),
-        duration(&counts.output),
-        petsc::peak_memory() as f64 / 1e9
+        duration(&counts.output)
     );
+    let _ = writeln!(text, "{:<15}at most {:.2} GB a rank", "memory:", petsc::peak_memory() as f64 / 1e9);
+    let _ = writeln!(text, "{:<15}{blas}", "BLAS:");
     text
 }
 
-/// A rough cost, from measured factorisation times of 2-D meshes: within a factor of three on a recent core.
+/// How the scene is solved, and why.
+fn strategy(scene: &Scene) -> String {
+    let asked = if scene.solver.strategy == Strategy::Auto { "auto picked " } else { "" };
+    match composition::form(scene) {
+        Form::Monolithic => "monolithic: all unknowns in one sparse system, factorised at each Newton iteration".into(),
+        Form::Following => format!(
+            "{asked}condensed: all moduli keep their ratios, so that the interior follows the contact\n\
+             {:15}face; Newton runs on the nodes in contact",
+            ""
+        ),
+        Form::Remembering => format!(
+            "{asked}condensed: not all moduli relax alike, so that the interior has a memory of its own; one\n\
+             {:15}factorisation per step length, two interior solves per step, Newton on the nodes in contact",
+            ""
+        ),
+    }
+}
+
+/// A rough cost, from measured times: within a factor of three on a recent core.
 struct Estimate {
     /// s per step.
     step: f64,
@@ -179,16 +195,30 @@ struct Estimate {
 }
 
 impl Estimate {
-    fn of(scene: &Scene, unknowns: usize) -> Self {
-        let unknowns = unknowns as f64;
-        // Nested dissection in the plane: n^1.5 operations, n log n entries. Half for a symmetric factorisation.
+    fn of(scene: &Scene, outline: &Outline) -> Self {
+        let unknowns = outline.unknowns as f64;
+        let face = 2.0 * (outline.face.edges + 1) as f64;
+        let newton = 4.0;
+        // Nested dissection in the plane: n^1.5 operations, n log n entries; half of both when symmetric.
+        let entries = |symmetry: f64| 8.0 * 5.0 * unknowns * unknowns.max(2.0).log2() * symmetry;
+        let (matrix, vector) = (18.0 * 12.0 * unknowns, 8.0 * unknowns);
+        let arms = (scene.materials.iter().map(|material| material.arms.len()).sum::<usize>() + 4) as f64;
+        // Half of the face in contact: a small dense factorisation and some products with the compliance.
+        let contact = newton * (2e-10 * (face / 2.0).powi(3).min(face.powi(2) * 300.0) + 3e-9 * face * face);
+        let compliance = 8.0 * face * face;
         let symmetry = if scene.friction.is_some() { 1.0 } else { 0.6 };
-        let newton = 3.5;
-        let factorisation = 1.3e-8 * unknowns.powf(1.5) * symmetry;
-        let assembly = 1.0e-6 * unknowns;
-        let entries = 5.0 * unknowns * unknowns.max(2.0).log2() * symmetry;
-        let matrices = 3.0 * 18.0 * 12.0 * unknowns;
-        Self { step: newton * (factorisation + assembly), memory: 5e7 + 8.0 * entries + matrices }
+        let (step, memory) = match composition::form(scene) {
+            Form::Monolithic => (
+                newton * (1.3e-8 * unknowns.powf(1.5) * symmetry + 1.0e-6 * unknowns),
+                entries(symmetry) + 3.0 * matrix + arms * vector,
+            ),
+            Form::Following => (contact, compliance + 80.0 * unknowns),
+            Form::Remembering => (
+                contact + 2.0 * 6e-7 * unknowns * (1.0 + 0.05 * unknowns.max(2.0).log2()),
+                compliance + entries(0.6) + 3.0 * matrix + arms * vector,
+            ),
+        };
+        Self { step, memory: 5e7 + memory }
     }
 }
 

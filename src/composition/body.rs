@@ -9,10 +9,11 @@ use crate::bulk::{Bulk, Part, Series};
 use crate::element::Quadrilateral;
 use crate::error::{Error, Result};
 use crate::mesh::gmsh::{self, Flaw, Role, Roles};
-use crate::mesh::{Layer, Mesh, Sides};
+use crate::mesh::{Cell, Face, Layer, Mesh, Sides};
 use crate::parallel::agree;
 use crate::petsc::Vector;
-use crate::rheology::{Arm, Memory, Prony};
+use crate::rheology::Memory;
+use crate::rheology::prony::{Prony, common_times};
 use crate::scene::{self, MeshFile, Scene};
 use crate::solve::{Body, Moduli, Region};
 
@@ -30,11 +31,71 @@ pub fn mesh(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Mes
     }
 }
 
-/// The mesh of the scene at `file`, without MPI.
-pub fn mesh_alone(scene: &Scene, file: &Path) -> Result<Mesh> {
+/// What a scene's body is, as far as it is known without a solver. A layer's mesh is not made for it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outline {
+    /// Its contact face.
+    pub face: Stretch,
+    /// The displacements to be solved for.
+    pub unknowns: usize,
+    /// Quadrilaterals and triangles.
+    pub cells: [usize; 2],
+}
+
+/// The contact face along x.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// m
+    pub from: f64,
+    /// m
+    pub to: f64,
+    /// How many edges it has.
+    pub edges: usize,
+    /// Whether its ends are the same node.
+    pub periodic: bool,
+}
+
+/// What the body of the scene at `file` is; a .msh file is read by this process.
+pub fn outline(scene: &Scene, file: &Path) -> Result<Outline> {
     match &scene.body {
-        scene::Body::Layer(layer) => Ok(layer_mesh(layer, scene)),
-        scene::Body::Mesh(mesh) => file_mesh(&bytes(mesh)?, mesh, scene, file),
+        scene::Body::Layer(layer) => Ok(Outline {
+            face: Stretch::of_layer(layer),
+            unknowns: layer.unknowns(),
+            cells: [layer.cells[0] * layer.cells[1], 0],
+        }),
+        scene::Body::Mesh(mesh) => {
+            let mesh = file_mesh(&bytes(mesh)?, mesh, scene, file)?;
+            let triangles = mesh.cells.iter().filter(|cell| matches!(cell, Cell::Triangle(_))).count();
+            let cells = [mesh.cells.len() - triangles, triangles];
+            Ok(Outline { face: Stretch::of(scene, &mesh.face), unknowns: mesh.free_components(), cells })
+        }
+    }
+}
+
+impl Stretch {
+    /// The face of the scene's mesh.
+    pub fn of(scene: &Scene, face: &Face) -> Self {
+        match (scene.layer(), face.x.as_slice()) {
+            (Some(layer), _) => Self::of_layer(layer),
+            (None, [from, .., to]) => Self { from: *from, to: *to, edges: face.edges.len(), periodic: false },
+            // No mesh has a face without an edge.
+            (None, _) => Self { from: 0.0, to: 0.0, edges: 0, periodic: false },
+        }
+    }
+
+    fn of_layer(layer: &scene::Layer) -> Self {
+        let periodic = layer.sides == scene::Sides::Periodic;
+        Self { from: 0.0, to: layer.width, edges: layer.cells[0], periodic }
+    }
+
+    /// m
+    pub fn width(&self) -> f64 {
+        self.to - self.from
+    }
+
+    /// The mean length of an edge along x, m.
+    pub fn cell(&self) -> f64 {
+        self.width() / self.edges as f64
     }
 }
 
@@ -146,12 +207,9 @@ pub struct Materials {
 impl Materials {
     /// Of the scene's materials.
     pub fn new(scene: &Scene) -> Self {
-        let mut times: Vec<f64> = Vec::new();
-        for arm in scene.materials.iter().flat_map(|material| &material.arms) {
-            if !times.contains(&arm.time) {
-                times.push(arm.time);
-            }
-        }
+        let all: Vec<Prony> =
+            scene.materials.iter().flat_map(|material| [material.shear_series(), material.bulk_series()]).collect();
+        let times = common_times(&all.iter().collect::<Vec<_>>());
         let mut series: Vec<Option<Series>> = Vec::new();
         let mut part = |wanted: Option<Series>| {
             series.iter().position(|known| *known == wanted).unwrap_or_else(|| {
@@ -159,14 +217,13 @@ impl Materials {
                 series.len() - 1
             })
         };
-        let region = |material: &scene::Material| {
-            let shear_part = part(relaxation(material, &times));
-            let constant_bulk = material.poisson_rule == Some(scene::PoissonRule::ConstantBulkModulus);
-            let bulk_part = if constant_bulk { part(None) } else { shear_part };
-            Region { moduli: moduli(material), shear_part, bulk_part }
+        let region = |material: &scene::Material| Region {
+            moduli: moduli(material),
+            shear_part: part(series_over(&material.shear_series(), &times)),
+            bulk_part: part(series_over(&material.bulk_series(), &times)),
         };
         let regions = scene.materials.iter().map(region).collect();
-        let memory = scene.materials.iter().find(|material| !material.arms.is_empty()).map(|material| material.memory);
+        let memory = scene.materials.iter().find(|material| !material.is_elastic()).map(|material| material.memory);
         let memory = match memory {
             Some(scene::Memory::BackwardEuler) => Memory::BackwardEuler,
             _ => Memory::Exponential,
@@ -201,10 +258,7 @@ fn moduli(material: &scene::Material) -> Moduli {
     Moduli { shear: g, bulk: 2.0 * g * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu)) }
 }
 
-/// The relaxation of the shear modulus over the common list of times; none = elastic.
-fn relaxation(material: &scene::Material, times: &[f64]) -> Option<Series> {
-    let arms: Vec<Arm> = material.arms.iter().map(|a| Arm { weight: a.weight, time: a.time }).collect();
-    let weight = |time: &f64| arms.iter().filter(|arm| arm.time == *time).map(|arm| arm.weight).sum();
-    let weights = times.iter().map(weight).collect();
-    (!arms.is_empty()).then(|| Series { long_term: Prony { arms }.long_term(), weights })
+/// A series over a list of relaxation times, s; none where nothing relaxes.
+fn series_over(prony: &Prony, times: &[f64]) -> Option<Series> {
+    (!prony.arms.is_empty()).then(|| Series { long_term: prony.long_term(), weights: prony.weights_over(times) })
 }

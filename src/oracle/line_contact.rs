@@ -39,6 +39,30 @@ impl Westergaard {
         self.wavelength / PI * (mean / self.closing_pressure()).clamp(0.0, 1.0).sqrt().asin()
     }
 
+    /// The indentation (m) of the summit under a mean pressure up to the closing one, less that of a uniform pressure.
+    ///
+    /// A contact 2a wide answers to more load like a periodic flat punch, by (2L/(pi E*)) ln(1/sin(pi a/L)) per mean
+    /// pressure; with sin^2(pi a/L) = mean/closing this integrates to (L/(pi E*)) mean (1 - ln(mean/closing)), which is
+    /// g_0 when the gap closes.
+    pub fn indentation(&self, mean: f64) -> f64 {
+        let share = mean / self.closing_pressure();
+        if share > 0.0 { self.amplitude * share * (1.0 - share.ln()) } else { 0.0 }
+    }
+
+    /// The mean pressure (Pa) at which a summit is `approach` (m) deep in a layer whose compliance to a uniform pressure
+    /// is `uniform` (m/Pa); partial contact.
+    pub fn mean_at(&self, approach: f64, uniform: f64) -> f64 {
+        let (mut low, mut high) = (0.0, self.closing_pressure());
+        loop {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                return middle;
+            }
+            let deep = uniform * middle + self.indentation(middle) > approach;
+            if deep { high = middle } else { low = middle }
+        }
+    }
+
     /// p(x), Pa, the summit of the indenter at x = 0; mean at most the closing pressure.
     ///
     /// p = 2 mean cos(pi x/L) sqrt(sin^2(pi a/L) - sin^2(pi x/L))/sin^2(pi a/L), in |x| < a.

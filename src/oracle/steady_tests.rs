@@ -58,6 +58,9 @@ fn deep_layer_is_westergaard() {
         let found = deep.solve(512, |x| SURFACE.at(x), Load::MeanPressure(mean)).unwrap();
         assert!((found.normal / mean - 1.0).abs() < 1e-10);
         assert!((found.contact_width - 2.0 * wavy.half_width(mean)).abs() < 2.0 / 512.0);
+        let uniform = deep.symbol(0.0).re;
+        assert!(((uniform * mean + wavy.indentation(mean)) / found.approach - 1.0).abs() < 1e-4);
+        assert!((wavy.mean_at(found.approach, uniform) / mean - 1.0).abs() < 1e-3);
         let peak = wavy.pressure(mean, 0.0);
         for (i, p) in found.pressure.iter().enumerate() {
             let x = i as f64 / 512.0;

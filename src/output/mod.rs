@@ -23,12 +23,14 @@
 //! When more rows come than were planned, the file is copied, extended and renamed into place.
 
 pub mod bulk;
+pub mod checkpoint;
 pub mod clock;
 pub mod reader;
 
 mod columns;
 mod locate;
 mod recorder;
+mod resume;
 mod skeleton;
 mod store;
 mod xdmf;
@@ -37,6 +39,7 @@ use std::time::SystemTime;
 
 pub use columns::{Energy, HistoryRow, InterfaceFrame};
 pub use recorder::Recorder;
+pub use resume::{Left, left};
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,6 +101,17 @@ pub struct Plan {
     pub interface_x: Vec<f64>,
     /// Bulk fields; none = no group `/bulk` and no XDMF file.
     pub bulk: Option<BulkPlan>,
+}
+
+/// Rows of a result file that are there to stay.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Rows {
+    /// Of the history.
+    pub history: usize,
+    /// Of the interface fields.
+    pub interface: usize,
+    /// Bulk frames.
+    pub bulk: usize,
 }
 
 /// The mesh and the number of the bulk fields to come.

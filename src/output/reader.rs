@@ -105,7 +105,7 @@ impl Results {
         Ok(field)
     }
 
-    fn field(&self, dataset: &str) -> Result<Field> {
+    pub(super) fn field(&self, dataset: &str) -> Result<Field> {
         let read = || -> hdf5::Result<Field> {
             let set = self.file.dataset(dataset)?;
             let shape = set.shape();

@@ -7,9 +7,10 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime};
 
 use super::columns::{self, INTERFACE, Value};
+use super::reader::Results;
 use super::store::{Store, Table, failed};
 use super::xdmf::MeshSize;
-use super::{HistoryRow, InterfaceFrame, Metadata, Plan, Status, skeleton, xdmf};
+use super::{HistoryRow, InterfaceFrame, Metadata, Plan, Rows, Status, resume, skeleton, xdmf};
 use crate::error::{Error, Result};
 
 /// Rows wait no longer than this before they are written.
@@ -34,7 +35,7 @@ struct Shared {
 #[derive(Debug)]
 pub(super) struct State {
     pub(super) store: Store,
-    plan: Plan,
+    pub(super) plan: Plan,
     pub(super) version: String,
     pub(super) mesh: Option<MeshSize>,
     pub(super) bulk_times: Vec<f64>,
@@ -62,7 +63,20 @@ impl Recorder {
             // The error at hand says more than one about a leftover.
             let _ = std::fs::remove_file(&scratch);
         }
-        let shared = Arc::new(Shared { state: Mutex::new(made?), woken: Condvar::new() });
+        Self::start(made?)
+    }
+
+    /// Goes on with the file `path` that an earlier run left, after its first `rows`; later ones are dropped. `plan` is
+    /// that of the run.
+    ///
+    /// # Errors
+    /// `Error::File` when the file cannot be read or does not have these rows; nothing was changed then.
+    pub fn resume(path: &Path, plan: Plan, rows: Rows) -> Result<Self> {
+        Self::start(resume::reopen(&absolute(path)?, plan, rows)?)
+    }
+
+    fn start(state: State) -> Result<Self> {
+        let shared = Arc::new(Shared { state: Mutex::new(state), woken: Condvar::new() });
         let theirs = Arc::clone(&shared);
         let writer = std::thread::Builder::new().name("mpjr output".into()).spawn(move || theirs.write_while_open());
         let writer = writer.map_err(|error| Error::Internal(format!("cannot start a thread: {error}")))?;
@@ -99,6 +113,26 @@ impl Recorder {
         let mut state = self.shared.lock();
         state.check()?;
         state.flush()
+    }
+
+    /// Adds all rows of other results to those here, which must be of a run with the same columns and face: `/history`
+    /// from its row 1 on.
+    pub fn append(&self, results: &Results) -> Result<()> {
+        let mut state = self.shared.lock();
+        state.check()?;
+        state.flush()?;
+        resume::append(&mut state, results)
+    }
+
+    /// Writes at once all rows handed over so far, forces them to the disk, and says how many there are.
+    pub fn sync(&self) -> Result<Rows> {
+        let mut state = self.shared.lock();
+        state.check()?;
+        state.flush()?;
+        let store = &state.store;
+        store.open()?.sync_data().map_err(|error| failed(store.path(), error))?;
+        let rows = |table| store.rows(table);
+        Ok(Rows { history: rows(Table::History), interface: rows(Table::Interface), bulk: rows(Table::Bulk) })
     }
 
     /// Writes what is left and how the run ended. Without this call the file says "stopped".
@@ -152,6 +186,24 @@ impl Shared {
 }
 
 impl State {
+    /// Nothing waits to be written.
+    pub(super) fn new(store: Store, plan: Plan, version: String, begun: Instant) -> Self {
+        // Coordinates and cells are in the file and are not needed twice.
+        let (plan, bulk) = (Plan { bulk: None, ..plan }, plan.bulk);
+        Self {
+            store,
+            plan,
+            version,
+            mesh: bulk.map(|bulk| MeshSize { nodes: bulk.coordinates.len(), cells: bulk.cells.len() }),
+            bulk_times: Vec::new(),
+            begun,
+            history: Vec::new(),
+            interface: Vec::new(),
+            failure: None,
+            closing: false,
+        }
+    }
+
     /// The error that the writer thread met, if it did.
     pub(super) fn check(&self) -> Result<()> {
         self.failure.clone().map_or(Ok(()), Err)
@@ -215,20 +267,8 @@ fn prepare(scratch: &Path, path: &Path, metadata: &Metadata, plan: Plan, first: 
     store.show_committed_only(&file)?;
     let waited = SystemTime::now().duration_since(metadata.started).unwrap_or_default();
     let begun = Instant::now().checked_sub(waited).unwrap_or_else(Instant::now);
-    // Coordinates and cells are in the file and are not needed twice.
-    let mesh = plan.bulk.map(|bulk| MeshSize { nodes: bulk.coordinates.len(), cells: bulk.cells.len() });
-    let mut state = State {
-        store,
-        plan: Plan { bulk: None, ..plan },
-        version: metadata.version.clone(),
-        mesh,
-        bulk_times: Vec::new(),
-        begun,
-        history: vec![*first],
-        interface: Vec::new(),
-        failure: None,
-        closing: false,
-    };
+    let mut state = State::new(store, plan, metadata.version.clone(), begun);
+    state.history.push(*first);
     state.flush().map_err(|error| about(path, error))?;
     std::fs::rename(scratch, path).map_err(|error| Error::file(path, error))?;
     state.store.moved_to(path);

@@ -47,7 +47,7 @@ pub(super) struct Store {
 }
 
 /// The datasets of a table, named from the root.
-fn names(table: Table, plan: &Plan) -> Vec<String> {
+pub(super) fn names(table: Table, plan: &Plan) -> Vec<String> {
     match table {
         Table::History => columns::history(plan.energy).map(|column| format!("history/{}", column.name)).collect(),
         Table::Interface => {
@@ -96,6 +96,26 @@ impl Store {
         let status_values = values.as_chunks().0.to_vec();
         let (path, identity) = (path.to_owned(), (about.dev(), about.ino()));
         Ok(Self { path, identity, tables, extents: (first, extents), wall_seconds_at, status_at, status_values })
+    }
+
+    /// Learns where everything is from the file at `path` of which `rows` of each table are to stay.
+    pub(super) fn reopen(path: &Path, plan: &Plan, rows: [usize; 3]) -> Result<Self> {
+        let mut store = Self::locate(path, plan)?;
+        for ((series, count), rows) in store.tables.iter_mut().zip(rows) {
+            let visible = |series: &Series| {
+                let at = (series.extent_at - store.extents.0) as usize;
+                let bytes = store.extents.1.get(at..at + 8).and_then(|bytes| bytes.try_into().ok());
+                bytes.map_or(0, u64::from_le_bytes)
+            };
+            if let Some(short) = series.iter().find(|series| visible(series) < rows as u64) {
+                let (name, there) = (&short.name, visible(short));
+                let reason =
+                    format!("has {there} rows of /{name} where the checkpoint counts {rows}; run without --resume");
+                return Err(Error::file(path, reason));
+            }
+            *count = rows;
+        }
+        Ok(store)
     }
 
     /// The file.

@@ -29,6 +29,8 @@ pub struct Accepted {
     pub step: Step,
     /// Newton iterations it took, those of rejected attempts included.
     pub newton: usize,
+    /// How often it was cut before it was accepted.
+    pub cuts: usize,
 }
 
 /// What follows an accepted step.
@@ -41,6 +43,8 @@ pub enum Next {
         now: f64,
         /// s
         dt: f64,
+        /// How often it may be cut (by four each time) before the solve fails.
+        max_cuts: usize,
     },
     /// The end.
     Stop,
@@ -75,6 +79,10 @@ pub trait Implicit {
     fn solve(&mut self, _b: &Vector, _x: &mut Vector) -> Result<()> {
         Err(Error::Internal("the tangent of this problem is a matrix".into()))
     }
+    /// Improves on `u`, the last accepted state, as the point from which Newton's method begins.
+    fn guess(&mut self, _step: Step, _u: &mut Vector) -> Result<()> {
+        Ok(())
+    }
     /// Judges the Newton iterate whose residual norm is `norm`.
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
     /// Takes note of an accepted step that ends at `u`.
@@ -101,7 +109,7 @@ pub struct Settings {
     pub linear: Linear,
     /// Newton iterations per attempt before the step is cut.
     pub max_newton: usize,
-    /// How often a step may be cut (by four each time) before the solve fails.
+    /// How often the first step may be cut (by four each time) before the solve fails; see [`Next::Step`].
     pub max_cuts: usize,
 }
 
@@ -115,8 +123,11 @@ pub struct Integrator {
 /// What the callbacks reach through PETSc's context pointer.
 struct Context<'a, P> {
     problem: &'a mut P,
+    ts: ffi::TS,
     step: Step,
     newton: usize,
+    /// Steps cut since TS began.
+    cuts: i32,
     error: Option<Error>,
 }
 
@@ -137,13 +148,17 @@ impl Integrator {
             check(ffi::TSSetMaxSteps(ts, i32::MAX - 1))?;
             check(ffi::TSSetMaxSNESFailures(ts, -1))?;
             check(ffi::TSSetMaxStepRejections(ts, settings.max_cuts as i32))?;
+            // A step that fails for good is a converged reason to be read, not an error of PETSc.
+            check(ffi::TSSetErrorIfStepFails(ts, ffi::PetscBool_PETSC_FALSE))?;
             let mut adapt = null_mut();
             check(ffi::TSGetAdapt(ts, &mut adapt))?;
             check(ffi::TSAdaptSetType(adapt, c"none".as_ptr()))?;
             check(ffi::TSGetSNES(ts, &mut snes))?;
             check(ffi::SNESSetTolerances(snes, 0.0, 0.0, 0.0, settings.max_newton as i32, -1))?;
             check(ffi::SNESGetLineSearch(snes, &mut search))?;
-            check(ffi::SNESLineSearchSetType(search, c"bt".as_ptr()))?;
+            // Backtracking on the norm stalls where friction turns between stick and slip: the norm must rise before it
+            // falls. The minimiser along the step does not.
+            check(ffi::SNESLineSearchSetType(search, c"l2".as_ptr()))?;
             check(ffi::SNESGetKSP(snes, &mut ksp))?;
             check(ffi::KSPGetPC(ksp, &mut pc))?;
             let (method, preconditioner) = match settings.linear {
@@ -163,8 +178,8 @@ impl Integrator {
         }
     }
 
-    /// Steps `problem` from `u` at `start` (its first step) until it says stop. `jacobian` is the matrix its tangent
-    /// is written to, `u` holds the last accepted state afterwards.
+    /// Steps `problem` from `u` at the time `now`, first by `dt` (s), until it says stop. `jacobian` is the matrix its
+    /// tangent is written to, `u` holds the last accepted state afterwards.
     ///
     /// # Errors
     /// What the problem returned, or [`Error::Solver`] when a step failed after the allowed cuts.
@@ -173,9 +188,10 @@ impl Integrator {
         problem: &mut P,
         jacobian: &mut Matrix,
         u: &mut Vector,
-        start: Step,
+        (now, dt): (f64, f64),
     ) -> Result<()> {
-        let mut context = Context { problem, step: start, newton: 0, error: None };
+        let mut context =
+            Context { problem, ts: self.ts, step: Step { t: now + dt, dt }, newton: 0, cuts: 0, error: None };
         let pointer = (&raw mut context).cast::<c_void>();
         let (ts, mut snes, mut reason) = (self.ts, null_mut(), 0);
         // SAFETY: `context` outlives TSSolve, the only call that runs the callbacks; PETSc gives each callback the
@@ -187,6 +203,7 @@ impl Integrator {
             check(ffi::TSSetPostStep(ts, Some(post_step::<P>)))?;
             check(ffi::TSGetSNES(ts, &mut snes))?;
             check(ffi::SNESSetConvergenceTest(snes, Some(convergence::<P>), pointer, None))?;
+            check(ffi::SNESSetComputeInitialGuess(snes, Some(guess::<P>), pointer))?;
             if self.own {
                 let (mut ksp, mut pc) = (null_mut(), null_mut());
                 check(ffi::MatShellSetContext(jacobian.raw(), pointer))?;
@@ -201,8 +218,8 @@ impl Integrator {
                 check(ffi::PCShellSetContext(pc, pointer))?;
                 check(ffi::PCShellSetApply(pc, Some(solve::<P>)))?;
             }
-            check(ffi::TSSetTime(ts, start.t - start.dt))?;
-            check(ffi::TSSetTimeStep(ts, start.dt))?;
+            check(ffi::TSSetTime(ts, now))?;
+            check(ffi::TSSetTimeStep(ts, dt))?;
             let code = ffi::TSSolve(ts, u.raw());
             ffi::TSGetConvergedReason(ts, &mut reason);
             code
@@ -322,6 +339,18 @@ unsafe extern "C" fn solve<P: Implicit>(pc: ffi::PC, b: ffi::Vec, x: ffi::Vec) -
     }
 }
 
+unsafe extern "C" fn guess<P: Implicit>(_snes: ffi::SNES, u: ffi::Vec, pointer: *mut c_void) -> ffi::PetscErrorCode {
+    // SAFETY: as for `residual`; TS is in the middle of a step that begins at its time.
+    unsafe {
+        guarded::<P>(pointer, |context| {
+            let mut start = 0.0;
+            check(ffi::TSGetTime(context.ts, &mut start))?;
+            let Step { dt, .. } = attempted(context.ts, start)?;
+            context.problem.guess(Step { t: start + dt, dt }, &mut Vector::borrow(u))
+        })
+    }
+}
+
 unsafe extern "C" fn convergence<P: Implicit>(
     snes: ffi::SNES,
     iteration: ffi::PetscInt,
@@ -357,11 +386,23 @@ unsafe extern "C" fn post_step<P: Implicit>(ts: ffi::TS) -> ffi::PetscErrorCode 
         guarded::<P>(pointer, |context| {
             let mut u = null_mut();
             check(ffi::TSGetSolution(ts, &mut u))?;
-            let accepted = Accepted { step: context.step, newton: std::mem::take(&mut context.newton) };
+            let (mut reason, mut cuts) = (0, 0);
+            check(ffi::TSGetConvergedReason(ts, &mut reason))?;
+            if reason < 0 {
+                // TS also comes here after a step that failed for good.
+                return Ok(());
+            }
+            check(ffi::TSGetStepRejections(ts, &mut cuts))?;
+            let accepted = Accepted {
+                step: context.step,
+                newton: std::mem::take(&mut context.newton),
+                cuts: (cuts - std::mem::replace(&mut context.cuts, cuts)) as usize,
+            };
             match context.problem.accepted(accepted, &Vector::borrow(u))? {
-                Next::Step { now, dt } => {
+                Next::Step { now, dt, max_cuts } => {
                     check(ffi::TSSetTime(ts, now))?;
-                    check(ffi::TSSetTimeStep(ts, dt))
+                    check(ffi::TSSetTimeStep(ts, dt))?;
+                    check(ffi::TSSetMaxStepRejections(ts, max_cuts as i32))
                 }
                 Next::Stop => check(ffi::TSSetConvergedReason(ts, ffi::TSConvergedReason_TS_CONVERGED_USER)),
             }

@@ -110,7 +110,8 @@ impl Vector {
         Ok(View { vector: self, pointer })
     }
 
-    /// This rank's entries, to write. Not collective.
+    /// This rank's entries, to write. All ranks ask together, also those without entries: PETSc keeps a norm until the
+    /// entries are asked for, and where only some ranks have forgotten it they wait for the others without end.
     pub fn view_mut(&mut self) -> Result<ViewMut<'_>> {
         let mut pointer = null_mut();
         // SAFETY: a live vector, borrowed mutably; the array is given back when the view is dropped.

@@ -6,8 +6,12 @@ use std::sync::OnceLock;
 use plotters::prelude::{BitMapBackend, IntoDrawingArea, SVGBackend};
 use plotters::style::{FontStyle, register_font};
 
-use super::Figure;
-use super::draw::{FONT, HEIGHT, UNIT, WIDTH, draw};
+use plotters::coord::Shift;
+use plotters::prelude::{DrawingArea, DrawingBackend};
+
+use super::draw::draw;
+use super::painter::{FONT, UNIT, refused};
+use super::{Figure, Panel, Sheet};
 use crate::error::{Error, Result};
 
 /// Drawing units averaged into one pixel of a PNG, along each side.
@@ -16,7 +20,17 @@ const SAMPLES: u32 = 2;
 /// By which a file of this program is known again.
 const MARK: &str = "drawn by mpjr";
 
+/// Width and height of a figure of its own, px.
+const SINGLE: (u32, u32) = (900, 600);
+
 impl Figure {
+    /// Writes `stem`.png and `stem`.svg and returns their paths. Files of another origin are not replaced.
+    pub fn write(&self, stem: &Path) -> Result<[PathBuf; 2]> {
+        Sheet { panels: vec![Panel::Curves(self.clone())], columns: 1, size: SINGLE }.write(stem)
+    }
+}
+
+impl Sheet {
     /// Writes `stem`.png and `stem`.svg and returns their paths. Files of another origin are not replaced.
     pub fn write(&self, stem: &Path) -> Result<[PathBuf; 2]> {
         fonts()?;
@@ -33,21 +47,39 @@ impl Figure {
         Ok([png, svg])
     }
 
+    fn rows(&self) -> usize {
+        self.panels.len().div_ceil(self.columns)
+    }
+
+    /// Width and height of all panels, px.
+    fn extent(&self) -> (u32, u32) {
+        (self.size.0 * self.columns as u32, self.size.1 * self.rows() as u32)
+    }
+
+    /// Draws every panel on its part of the area.
+    fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>, sink: f64) -> Result<()> {
+        for (panel, part) in self.panels.iter().zip(area.split_evenly((self.rows(), self.columns))) {
+            draw(panel, &part, sink)?;
+        }
+        area.present().map_err(refused)
+    }
+
     fn svg(&self) -> Result<String> {
+        let (width, height) = self.extent();
         let mut text = String::new();
-        draw(self, &SVGBackend::with_string(&mut text, (WIDTH * UNIT, HEIGHT * UNIT)).into_drawing_area(), 0.07)?;
+        self.draw(&SVGBackend::with_string(&mut text, (width * UNIT, height * UNIT)).into_drawing_area(), 0.07)?;
         // The drawing units are finer than what a viewer should take for a pixel.
-        let drawn = format!("width=\"{}\" height=\"{}\"", WIDTH * UNIT, HEIGHT * UNIT);
-        let shown = format!("width=\"{WIDTH}\" height=\"{HEIGHT}\"");
+        let drawn = format!("width=\"{}\" height=\"{}\"", width * UNIT, height * UNIT);
+        let shown = format!("width=\"{width}\" height=\"{height}\"");
         let text = text.replacen(&drawn, &shown, 1);
         let end = text.find("?>").map_or(0, |at| at + 2);
         Ok(format!("{}<!-- {MARK} {} -->\n{}", &text[..end], env!("CARGO_PKG_VERSION"), &text[end..]))
     }
 
     fn png(&self) -> Result<Vec<u8>> {
-        let (width, height) = (WIDTH * UNIT, HEIGHT * UNIT);
+        let (width, height) = (self.extent().0 * UNIT, self.extent().1 * UNIT);
         let mut fine = vec![255; (width * height * 3) as usize];
-        draw(self, &BitMapBackend::with_buffer(&mut fine, (width, height)).into_drawing_area(), 0.2)?;
+        self.draw(&BitMapBackend::with_buffer(&mut fine, (width, height)).into_drawing_area(), 0.2)?;
         let (columns, rows) = (width / SAMPLES, height / SAMPLES);
         let value = |row: u32, column: u32, channel: u32| {
             let at =

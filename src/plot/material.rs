@@ -1,8 +1,9 @@
 //! Figures of a material: what Bonari and Paggi (2020), Figure 3, shows of theirs.
 
-use super::{Axis, Curve, Figure, PALETTE, REFERENCE, Stroke};
+use super::{Axis, Curve, Figure, PALETTE, REFERENCE, Sheet, Stroke};
 use crate::rheology::fit::{Samples, Test};
-use crate::rheology::{Band, Fractional, Prony};
+use crate::rheology::{Arm, Band, Fractional, Poisson, Prony};
+use crate::scene::{self, Material, PoissonRule};
 
 /// A series to draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,6 +14,34 @@ pub struct Series<'a> {
     pub instantaneous: f64,
     /// The series.
     pub prony: &'a Prony,
+}
+
+/// The Poisson ratio over time of some materials, each with its entry in the legend: (3 K - 2 G)/(6 K + 2 G) of the
+/// moduli at that time. `band` has the times that a loading history visits; the figure shows two decades more on
+/// either side.
+pub fn poisson_figure(materials: &[(&str, &Poisson)], band: Band) -> Figure {
+    let times = Band { from: band.from / 100.0, to: band.to * 100.0 };
+    let curves: Vec<Curve> = materials
+        .iter()
+        .enumerate()
+        .map(|(i, (label, poisson))| Curve {
+            label: (*label).into(),
+            points: times.samples(400).into_iter().map(|t| (t, poisson.at(t))).collect(),
+            colour: PALETTE[i % PALETTE.len()],
+            stroke: Stroke::Solid,
+        })
+        .collect();
+    let values = || curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
+    let (least, most) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    // A ratio that stays is a line through the middle.
+    let margin = (0.05 * (most - least)).max(0.01);
+    Figure {
+        title: "Poisson ratio".into(),
+        x: Axis::log("time t, s").over(times.from, times.to),
+        y: Axis::linear("Poisson ratio ν(t) = (3K − 2G)/(6K + 2G)").over(least - margin, most + margin),
+        curves,
+        shaded: Some((band, "times of the loading history".into())),
+    }
 }
 
 /// What the series stand for.
@@ -260,5 +289,94 @@ impl MaterialFigures<'_> {
             }
             Reference::Data(_) => None,
         }
+    }
+}
+
+/// A material with its entry in the legend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solid {
+    label: String,
+    shear_modulus: f64,
+    prony: Prony,
+    /// The instantaneous Poisson ratio where the bulk modulus stays.
+    constant_bulk: Option<f64>,
+}
+
+impl Solid {
+    /// The material of a scene; without a label its number of arms stands for it.
+    pub fn of(material: &Material, label: &str) -> Self {
+        let arm = |arm: &scene::Arm| Arm { weight: arm.weight, time: arm.time };
+        let arms: Vec<Arm> = material.arms.iter().map(arm).collect();
+        let label = match (label, arms.len()) {
+            ("", 0) => "elastic".into(),
+            ("", 1) => "1 arm".into(),
+            ("", count) => format!("{count} arms"),
+            (label, _) => label.to_owned(),
+        };
+        let stays = material.poisson_rule == Some(PoissonRule::ConstantBulkModulus);
+        Self {
+            label,
+            shear_modulus: material.shear_modulus,
+            prony: Prony { arms },
+            constant_bulk: stays.then_some(material.poisson_ratio),
+        }
+    }
+
+    /// Its entry in the legend.
+    pub fn label(&self) -> &str {
+        &self.label
+    }
+
+    /// (3 K - 2 G(t))/(6 K + 2 G(t)): the Poisson ratio of the moduli at time t.
+    fn poisson_ratio(&self, instantaneous: f64, t: f64) -> f64 {
+        let bulk = 2.0 * (1.0 + instantaneous) / (3.0 * (1.0 - 2.0 * instantaneous));
+        let shear = self.prony.relaxation(t);
+        (3.0 * bulk - 2.0 * shear) / (6.0 * bulk + 2.0 * shear)
+    }
+}
+
+/// Figure 3 of any materials on one sheet, beside the power law of the shear modulus that they stand for; and the
+/// Poisson ratio where it changes.
+pub fn sheet(solids: &[Solid], law: Option<Fractional>) -> Sheet {
+    let times = || solids.iter().flat_map(|solid| &solid.prony.arms).map(|arm| arm.time);
+    let (low, high) = times().fold((f64::INFINITY, 0.0f64), |(low, high), t| (low.min(t), high.max(t)));
+    // Whole decades around the relaxation times, at least two.
+    let (first, last) = if low <= high { (low.log10().floor(), high.log10().ceil()) } else { (-1.0, 1.0) };
+    let last = last.max(first + 2.0);
+    let band = Band { from: 10f64.powf(first), to: 10f64.powf(last) };
+    let series = solids.iter().map(|solid| Series {
+        label: &solid.label,
+        instantaneous: solid.shear_modulus,
+        prony: &solid.prony,
+    });
+    let reference = law.map_or(Reference::None, Reference::Law);
+    let figures = MaterialFigures { symbol: "G", series: series.collect(), reference, band };
+    let mut figures: Vec<Figure> = figures.all().into_iter().map(|(_, figure)| figure).collect();
+    // The band is that of the relaxation times; nothing was measured.
+    figures.iter_mut().for_each(|figure| figure.shaded = None);
+    if solids.iter().any(|solid| solid.constant_bulk.is_some()) {
+        figures.push(poisson(solids, band));
+    }
+    let columns = if figures.len() > 1 { 2 } else { 1 };
+    Sheet::of_curves(figures, columns, (760, 520))
+}
+
+fn poisson(solids: &[Solid], band: Band) -> Figure {
+    let curve = |(i, solid): (usize, &Solid)| {
+        let instantaneous = solid.constant_bulk?;
+        let times = Band { from: band.from / 100.0, to: band.to * 100.0 }.samples(400);
+        Some(Curve {
+            label: solid.label.clone(),
+            points: times.iter().map(|&t| (t, solid.poisson_ratio(instantaneous, t))).collect(),
+            colour: PALETTE[i % PALETTE.len()],
+            stroke: Stroke::Solid,
+        })
+    };
+    Figure {
+        title: "Poisson ratio at a constant bulk modulus".into(),
+        x: Axis::log("time t, s"),
+        y: Axis::linear("ν(t) = (3 K − 2 G)/(6 K + 2 G)"),
+        curves: solids.iter().enumerate().filter_map(curve).collect(),
+        shaded: None,
     }
 }

@@ -3,12 +3,19 @@
 //! The fonts are part of the program, so that a figure looks the same everywhere. Colours are those of Okabe and Ito
 //! (Color Universal Design, 2008), which readers with any colour vision tell apart; curves also differ by their dashes.
 
+mod colours;
 mod draw;
 mod files;
+mod map;
 pub mod material;
+mod painter;
+pub mod results;
+pub mod sweep;
 mod ticks;
 
+pub use colours::Ramp;
 pub use files::replaceable;
+pub use map::{Colouring, Map, Raster};
 
 use crate::rheology::Band;
 
@@ -99,4 +106,31 @@ pub struct Figure {
     pub curves: Vec<Curve>,
     /// A range of x to shade, and its entry in the legend.
     pub shaded: Option<(Band, String)>,
+}
+
+/// One pair of axes and what stands over them.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Panel {
+    /// Curves.
+    Curves(Figure),
+    /// A field of colours.
+    Map(Map),
+}
+
+/// Panels of one size, row after row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sheet {
+    /// Not empty.
+    pub panels: Vec<Panel>,
+    /// Panels in a row, >= 1.
+    pub columns: usize,
+    /// Width and height of a panel, px.
+    pub size: (u32, u32),
+}
+
+impl Sheet {
+    /// Panels of curves.
+    pub fn of_curves(figures: Vec<Figure>, columns: usize, size: (u32, u32)) -> Self {
+        Self { panels: figures.into_iter().map(Panel::Curves).collect(), columns, size }
+    }
 }

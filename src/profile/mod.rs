@@ -1,18 +1,34 @@
-//! Rigid profiles: the elevation h(x) of the indenter above its lowest point, and its slope.
+//! Rigid profiles: the elevation h(x) of the indenter's lower surface above its datum, and its slope.
 
+mod expression;
+pub mod profilometer;
+mod rough;
+mod sampled;
 mod smooth;
+mod survey;
 
 use crate::error::Result;
 
+pub use expression::Formula;
+pub use rough::{Rms, Rough, Roughness};
+pub use sampled::{Point, Sampled};
 pub use smooth::{Circle, Harmonic, Parabola, Wedge};
+pub use survey::Survey;
 
 /// A rigid profile.
 pub trait Profile {
-    /// h(x), m >= 0 at its lowest point, and dh/dx, at x, m, in the indenter's own frame.
+    /// h(x), m, and dh/dx at x, m, in the indenter's own frame. Contact begins where the approach reaches h: the
+    /// lowest point is 0 for every profile but expressions and sampled ones, which say their own datum.
     ///
     /// # Errors
     /// [`Error::Domain`](crate::error::Error::Domain) where the profile is not known.
     fn at(&self, x: f64) -> Result<Elevation>;
+}
+
+impl Profile for Box<dyn Profile> {
+    fn at(&self, x: f64) -> Result<Elevation> {
+        (**self).at(x)
+    }
 }
 
 /// A point of a profile.

@@ -4,11 +4,13 @@ pub mod band;
 pub mod fit;
 pub mod fractional;
 pub mod memory;
+pub mod poisson;
 pub mod prony;
 pub mod shift;
 
 pub use band::Band;
 pub use fractional::Fractional;
 pub use memory::{Factors, Memory};
+pub use poisson::Poisson;
 pub use prony::{Arm, Prony};
 pub use shift::Shift;

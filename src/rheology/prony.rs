@@ -11,6 +11,14 @@ pub struct Arm {
     pub time: f64,
 }
 
+/// The relaxation times of several series, each once, ascending, s.
+pub fn common_times(series: &[&Prony]) -> Vec<f64> {
+    let mut times: Vec<f64> = series.iter().flat_map(|series| &series.arms).map(|arm| arm.time).collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
+}
+
 /// M(t)/M_inst = mu_0 + sum_i mu_i exp(-t/tau_i) with mu_0 = 1 - sum_i mu_i; Bonari and Paggi (2020), Eq. (8).
 ///
 /// The paper's G-infinity is the *instantaneous* modulus M_inst = M(0); the long-term one is mu_0 M_inst.
@@ -24,6 +32,13 @@ impl Prony {
     /// mu_0 = 1 - sum mu_i, never below zero (weights that sum to 1 may exceed it by round-off).
     pub fn long_term(&self) -> f64 {
         (1.0 - self.arms.iter().map(|arm| arm.weight).sum::<f64>()).max(0.0)
+    }
+
+    /// The weights over a list of times that several series share: zero where this one has no arm. Arms of one time
+    /// are added.
+    pub fn weights_over(&self, times: &[f64]) -> Vec<f64> {
+        let at = |time: &f64| self.arms.iter().filter(|arm| arm.time == *time).map(|arm| arm.weight).sum();
+        times.iter().map(at).collect()
     }
 
     /// M(t)/M_inst at t >= 0 s.

@@ -43,7 +43,7 @@ impl Shift {
                 // At T_ref - c2 the law has its pole (the Vogel temperature): nothing flows below it.
                 if c2 + above <= 0.0 {
                     return Err(Error::Domain(format!(
-                        "the WLF law holds only above {} K (reference - c2); the temperature is {temperature} K",
+                        "the WLF law holds only above {:.2} K (reference - c2); the temperature is {temperature} K",
                         reference - c2
                     )));
                 }

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::{Arm, Indenter, Layer, Material, Phase, Scene, Sides, When, keys};
+use super::{Arm, Extend, Indenter, Layer, Material, Phase, Scene, Sides, When, keys};
 use crate::error::{Error, Result};
 
 /// The key and what is wrong with it.
@@ -43,7 +43,7 @@ fn materials(materials: &[Material]) -> Check {
         (None, 1) => format!("material.{key}"),
         (None, _) => format!("material.{index}.{key}"),
     };
-    let with_arms = || materials.iter().enumerate().filter(|(_, material)| !material.arms.is_empty());
+    let with_arms = || materials.iter().enumerate().filter(|(_, material)| !material.is_elastic());
     for (index, Material { shear_modulus, .. }) in materials.iter().enumerate() {
         if !(shear_modulus.is_finite() && *shear_modulus > 0.0) {
             let reason = format!("gives a shear modulus of {shear_modulus:?} Pa; give another");
@@ -93,25 +93,40 @@ fn size(layer: &Layer) -> Check {
     }
 }
 
-/// Under periodic sides the profile has the period of the layer. The harmonic profile must have it by itself; any
-/// other is taken from its nearest image.
+/// Under periodic sides the profile has the period of the layer. The harmonic, sampled and rough profiles must have it
+/// by themselves (the sampled one as far as the scene says its period); any other is taken from its nearest image.
 fn period(layer: &Layer, indenter: &Indenter) -> Check {
-    let (Sides::Periodic, Indenter::Harmonic { wavelength, .. }) = (layer.sides, indenter) else { return Ok(()) };
-    let waves = layer.width / wavelength;
-    if waves.round() >= 1.0 && (waves - waves.round()).abs() <= 1e-9 * waves.round() {
+    let (what, period) = match *indenter {
+        _ if layer.sides != Sides::Periodic => return Ok(()),
+        Indenter::Harmonic { wavelength, .. } => ("wavelengths", wavelength),
+        Indenter::Rough { period, .. } => ("periods of the profile", period),
+        Indenter::Sampled { period: Some(period), .. } => ("periods of the profile", period),
+        Indenter::Sampled { extend: Extend::Error, .. } => {
+            return fail("indenter.extend", "must be \"periodic\" under periodic sides, got \"error\"");
+        }
+        _ => return Ok(()),
+    };
+    whole_periods(layer.width, what, period).or_else(|reason| fail("layer.width", reason))
+}
+
+/// Whether a periodic layer `width` m wide holds a whole number of `period`s, m, which messages call `what`.
+///
+/// # Errors
+/// The reason why not, to stand after the key of the width or of the period.
+pub fn whole_periods(width: f64, what: &str, period: f64) -> std::result::Result<(), String> {
+    let count = width / period;
+    if count.round() >= 1.0 && (count - count.round()).abs() <= 1e-9 * count.round() {
         return Ok(());
     }
-    let nearest: Vec<String> = [waves.floor(), waves.ceil()]
+    let nearest: Vec<String> = [count.floor(), count.ceil()]
         .into_iter()
-        .filter(|waves| *waves >= 1.0)
-        .map(|waves| format!("{} m", short(waves * wavelength)))
+        .filter(|count| *count >= 1.0)
+        .map(|count| format!("{} m", short(count * period)))
         .collect();
-    let reason = format!(
-        "must be a whole number of wavelengths ({wavelength:?} m) under periodic sides, got {:?} m; nearest: {}",
-        layer.width,
+    Err(format!(
+        "must be a whole number of {what} ({period:?} m) under periodic sides, got {width:?} m; nearest: {}",
         nearest.join(" or ")
-    );
-    fail("layer.width", reason)
+    ))
 }
 
 /// Every step moves the clock, the clock stays a number, and PETSc can count the steps.

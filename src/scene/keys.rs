@@ -63,6 +63,11 @@ impl<'a> Section<'a> {
         self.table.contains_key(key)
     }
 
+    /// The table itself.
+    pub fn table(&self) -> &'a Table {
+        self.table
+    }
+
     /// Refuses every key but these. To be called before anything is read, so that a misspelt key is reported as such
     /// and not as a missing one.
     pub fn only(&self, known: &[&str]) -> Result<()> {

@@ -4,18 +4,29 @@
 //! its field states, because [`read`] refuses a file that says otherwise.
 
 mod checks;
+mod differences;
+mod include;
+mod indenter;
 mod keys;
+mod material;
 mod overrides;
+mod penalty;
 mod read;
 mod resolved;
+pub mod sweep;
 
 use std::path::PathBuf;
 
 use serde::Serialize;
 
+pub use checks::whole_periods;
+pub use differences::differences;
+pub use include::{Load, include, open};
+pub use indenter::{Extend, Indenter, Rms};
 pub(crate) use keys::advice;
-pub use overrides::set;
-pub use read::{from_table, parse, read};
+pub use overrides::{get, set};
+pub use penalty::{added_compliance, penalty_for};
+pub use read::{from_table, parse, read, read_with};
 
 /// One scene: the layer, its material, the indenter, the contact, the loading history, and what to keep of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -124,16 +135,22 @@ pub struct Material {
     pub shear_modulus: f64,
     /// Instantaneous Poisson ratio, in (-1, 0.5).
     pub poisson_ratio: f64,
-    /// Prony arms of the shear modulus; empty = linear elastic. The weights sum to at most 1.
+    /// Prony arms of the shear modulus, at the temperature of the scene; empty = it does not relax. The weights sum to at most 1.
     pub arms: Vec<Arm>,
-    /// How the bulk modulus relaxes; always present when there are arms.
+    /// How the bulk modulus relaxes; always present when there are arms of either modulus.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub poisson_rule: Option<PoissonRule>,
+    /// Prony arms of the bulk modulus, with the rule of that name only. The weights sum to at most 1.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bulk_arms: Vec<Arm>,
     /// The update of the arms over a step.
     pub memory: Memory,
+    /// Where all this comes from: the file, the power law and the error of its series, the shift of the times.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
 }
 
-/// One arm of a Prony series: G(t) = G_inst (1 - sum_i weight_i (1 - exp(-t / time_i))).
+/// One arm of a Prony series: M(t) = M_inst (1 - sum_i weight_i (1 - exp(-t / time_i))).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Arm {
     /// Share of the instantaneous modulus, in (0, 1].
@@ -150,6 +167,8 @@ pub enum PoissonRule {
     ConstantRatio,
     /// The bulk modulus stays; the Poisson ratio rises as the shear modulus relaxes.
     ConstantBulkModulus,
+    /// The bulk modulus has arms of its own.
+    BulkArms,
 }
 
 /// The time integration of an arm over one step.
@@ -162,44 +181,10 @@ pub enum Memory {
     BackwardEuler,
 }
 
-/// The rigid profile h(x), m, lowest at 0; it moves as h(x - s(t)).
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(tag = "profile", rename_all = "lowercase")]
-pub enum Indenter {
-    /// h = amplitude (1 - cos(2 pi x / wavelength)); both > 0.
-    Harmonic {
-        /// m
-        amplitude: f64,
-        /// m
-        wavelength: f64,
-    },
-    /// h = (x - centre)^2 / (2 radius); radius > 0.
-    Parabola {
-        /// m
-        radius: f64,
-        /// m
-        centre: f64,
-    },
-    /// The exact arc of a circle; radius > 0.
-    Circle {
-        /// m
-        radius: f64,
-        /// m
-        centre: f64,
-    },
-    /// h = slope |x - centre|; slope > 0.
-    Wedge {
-        /// -
-        slope: f64,
-        /// m
-        centre: f64,
-    },
-}
-
 /// How non-penetration is enforced.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Contact {
-    /// Pa/m, > 0: p = -penalty * gap where gap < 0.
+    /// Pa/m, > 0: p = -penalty * gap where gap < 0; always resolved (from `tolerance` where the file says that).
     pub penalty: f64,
     /// Where the interface element evaluates the laws.
     pub quadrature: Quadrature,
@@ -288,6 +273,8 @@ pub struct Output {
     pub interface_every: usize,
     /// When bulk fields are written; empty = never.
     pub bulk_at: Vec<When>,
+    /// Steps between checkpoints; 0 = only on a signal.
+    pub checkpoint_every: usize,
 }
 
 /// A moment of the loading history.

@@ -17,6 +17,21 @@ pub(super) fn apply(table: &mut Table, overrides: &[String], file: &Path) -> Res
     Ok(())
 }
 
+/// Whether an override is of a material as a whole or of its file, and so decides what other keys there are.
+pub(super) fn names_material(typed: &str) -> bool {
+    split(typed).is_ok_and(|(path, _)| is_of_material(path))
+}
+
+/// Whether the path is that of a material as a whole or of its file.
+pub(super) fn is_of_material(path: &str) -> bool {
+    let keys = split_path(path);
+    match keys.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
+        ["material"] | ["material", "file"] | ["material", _, "file"] => true,
+        ["material", index] => index.parse::<usize>().is_ok(),
+        _ => false,
+    }
+}
+
 /// Sets `path`, dotted keys such as `layer.width`, in the table of a scene. An element of an array is addressed by
 /// its index from 0 or, where it has one, by its name or region (`phase.slide.velocity`); a key with a dot in it is quoted
 /// (`phase."1.5 s".steps`). Tables on the way are made. Whether the keys exist is for the reader of the table to say.
@@ -28,6 +43,22 @@ pub fn set(table: &mut Table, path: &str, value: Value, file: &Path) -> Result<(
         return Err(Error::scene(file, path, "must be keys joined by dots, such as layer.width"));
     }
     put_in_table(table, &keys, 0, value).map_err(|(depth, reason)| Error::scene(file, keys[..depth].join("."), reason))
+}
+
+/// What stands at `path`, a path as [`set`] takes it; none where there is nothing.
+pub fn get<'a>(table: &'a Table, path: &str) -> Option<&'a Value> {
+    let keys = split_path(path);
+    let (first, rest) = keys.split_first()?;
+    let mut before = first;
+    rest.iter().try_fold(table.get(first)?, |value, key| {
+        let found = match value {
+            Value::Table(table) => table.get(key),
+            Value::Array(array) => element(array, before, key).ok().and_then(|index| array.get(index)),
+            _ => None,
+        };
+        before = key;
+        found
+    })
 }
 
 /// Adds to the error of a scene the last override at its key, of the table that the key is in, or of what the key

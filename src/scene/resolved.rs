@@ -36,6 +36,20 @@ impl Scene {
         self.layer().filter(|layer| layer.sides == Sides::Periodic).map(|layer| layer.width)
     }
 
+    /// The same scene up to the end of its first `count` phases, without a title: what the state there depends on.
+    pub fn first_phases(&self, count: usize) -> Self {
+        let phases = self.phases[..count.min(self.phases.len())].to_vec();
+        let end: f64 = phases.iter().map(|phase| phase.duration).sum();
+        let near = phases.last().map_or(0.0, |last| 1e-9 * last.duration / last.steps as f64);
+        let mut part = Self { title: String::new(), phases, ..self.clone() };
+        part.output.checkpoint_every = 0;
+        part.output.bulk_at.retain(|moment| match moment {
+            When::PhaseEnd(name) => part.phases.iter().any(|phase| phase.name == *name),
+            When::Time(time) => *time <= end + near,
+        });
+        part
+    }
+
     /// Moments that round-off put just after the end of the history are its end.
     pub(super) fn clamp_moments(&mut self) {
         let end = self.duration();

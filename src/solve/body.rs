@@ -9,6 +9,7 @@ use crate::element::{Quadrilateral, bbar, quad4, tri3};
 use crate::error::Result;
 use crate::mesh::{Cell, Mesh, Numbering};
 use crate::petsc::{Gather, Matrix, Pattern, Vector};
+use crate::snapshot::NaturalOrder;
 
 /// Shear and bulk modulus, Pa.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,6 +122,12 @@ impl Body {
     /// A zero vector of the unknowns.
     pub fn vector(&self) -> Result<Vector> {
         Vector::new(&self.comm, 2 * self.numbering.owned.len())
+    }
+
+    /// The order of the mesh, for vectors of the unknowns.
+    pub fn natural_order(&self, layout: &Vector) -> Result<NaturalOrder> {
+        let global: Vec<i32> = self.numbering.global.iter().flat_map(|&node| [2 * node, 2 * node + 1]).collect();
+        NaturalOrder::new(&self.comm, layout, &global, 2 * self.numbering.owned.start)
     }
 
     /// G K_dev + K K_vol with the moduli of each region, and `diagonal` for the held unknowns.

@@ -8,21 +8,27 @@ use super::{Observer, Report, TransientProblem};
 use crate::error::{Error, Result};
 use crate::loading::Phase;
 use crate::petsc::{Accepted, Implicit, Integrator, Matrix, Next, Settings, Step, Vector, Verdict};
+use crate::snapshot::Snapshot;
 
 /// What the driver may do to get through a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Newton iterations per attempt.
     pub max_newton: usize,
-    /// How often a step may be cut by four.
+    /// How often in succession a step may be cut by four.
     pub max_cuts: usize,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { max_newton: 30, max_cuts: 8 }
+        // From stick to slip under a sharp regularisation a step takes up to a hundred.
+        Self { max_newton: 60, max_cuts: 8 }
     }
 }
+
+/// How often a planned step may be cut, all its pieces together: pieces grow back by two, so that one which needs a 32nd
+/// of the planned step throughout is cut about twenty times.
+const MOST_CUTS: usize = 40;
 
 /// A problem on its way through its phases.
 pub struct Driver<'a> {
@@ -33,7 +39,40 @@ pub struct Driver<'a> {
     target: usize,
     /// The end of the last accepted step, s.
     now: f64,
+    /// The length of the next step, s; none = as planned.
+    dt: Option<f64>,
+    max_cuts: usize,
+    /// Cuts of the planned step so far.
+    cuts: usize,
     counts: Counts,
+}
+
+/// Where a run stands between two steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Position {
+    /// Index of the phase of the next step.
+    pub phase: usize,
+    /// Index of the planned step within the phase.
+    pub target: usize,
+    /// The end of the last accepted step, s.
+    pub now: f64,
+    /// The length of the next step, s.
+    pub dt: f64,
+    /// Cuts of the planned step so far.
+    pub cuts: usize,
+}
+
+impl Position {
+    /// Adds the position to a snapshot.
+    pub fn save(&self, snapshot: &mut Snapshot) {
+        snapshot.put("position", vec![self.phase as f64, self.target as f64, self.now, self.dt, self.cuts as f64]);
+    }
+
+    /// The position that a snapshot holds.
+    pub fn restore(snapshot: &Snapshot) -> Result<Self> {
+        let [phase, target, now, dt, cuts] = snapshot.numbers("position")?;
+        Ok(Self { phase: phase as usize, target: target as usize, now, dt, cuts: cuts as usize })
+    }
 }
 
 /// What a run took.
@@ -56,10 +95,28 @@ pub struct Counts {
 impl<'a> Driver<'a> {
     /// A driver at the beginning of the history.
     pub fn new(problem: &'a mut dyn TransientProblem, observer: &'a mut dyn Observer, phases: &'a [Phase]) -> Self {
-        Self { problem, observer, phases, phase: 0, target: 0, now: 0.0, counts: Counts::default() }
+        Self {
+            problem,
+            observer,
+            phases,
+            phase: 0,
+            target: 0,
+            now: 0.0,
+            dt: None,
+            max_cuts: 0,
+            cuts: 0,
+            counts: Counts::default(),
+        }
     }
 
-    /// Runs the whole history from rest; `u` ends as the last accepted state.
+    /// The same driver at a later position, where `counts` were counted before. The problem must have been restored
+    /// to the state there.
+    pub fn at(self, position: Position, counts: Counts) -> Self {
+        let Position { phase, target, now, dt, cuts } = position;
+        Self { phase, target, now, dt: Some(dt), cuts, counts, ..self }
+    }
+
+    /// Runs the rest of the history; `u` ends as the last accepted state.
     ///
     /// # Errors
     /// [`Error::Solver`] when a step fails after all cuts; what was accepted before has been observed.
@@ -70,9 +127,12 @@ impl<'a> Driver<'a> {
         tangent: &mut Matrix,
         u: &mut Vector,
     ) -> Result<()> {
-        let Some(first) = self.phases.first() else { return Ok(()) };
-        let start = Step { t: first.steps[0].time, dt: first.steps[0].dt };
-        self.problem.begin(first.clone());
+        let Some(phase) = self.phases.get(self.phase) else { return Ok(()) };
+        let Some(target) = phase.steps.get(self.target) else { return Ok(()) };
+        let start = (self.now, self.dt.unwrap_or(target.dt));
+        self.problem.begin(phase.clone());
+        self.max_cuts = settings.max_cuts;
+        let settings = Settings { max_cuts: self.cuts_left(), ..settings };
         let begun = Instant::now();
         let outcome = Integrator::new(comm, settings)?.solve(self, tangent, u, start);
         self.counts.total = begun.elapsed();
@@ -87,14 +147,23 @@ impl<'a> Driver<'a> {
         self.counts
     }
 
+    /// How often the next step may be cut.
+    fn cuts_left(&self) -> usize {
+        match self.cuts {
+            0 => self.max_cuts,
+            cuts => self.max_cuts.min(MOST_CUTS.saturating_sub(cuts)),
+        }
+    }
+
     /// The step after one that ended at `now` and was `dt` long.
     fn next(&mut self, dt: f64) -> Next {
         let target = self.phases[self.phase].steps[self.target];
         let remaining = target.time - self.now;
         if remaining > 1e-9 * target.dt {
             // Inside a planned step that was cut: grow back by two.
-            return Next::Step { now: self.now, dt: remaining.min(2.0 * dt) };
+            return Next::Step { now: self.now, dt: remaining.min(2.0 * dt), max_cuts: self.cuts_left() };
         }
+        self.cuts = 0;
         self.now = target.time;
         self.target += 1;
         if self.target == self.phases[self.phase].steps.len() {
@@ -105,7 +174,7 @@ impl<'a> Driver<'a> {
                 None => return Next::Stop,
             }
         }
-        Next::Step { now: self.now, dt: self.phases[self.phase].steps[self.target].dt }
+        Next::Step { now: self.now, dt: self.phases[self.phase].steps[self.target].dt, max_cuts: self.cuts_left() }
     }
 }
 
@@ -132,6 +201,10 @@ impl Implicit for Driver<'_> {
         self.problem.solve(b, x)
     }
 
+    fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        self.problem.guess(step, u)
+    }
+
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
         self.problem.test(iteration, norm)
     }
@@ -141,20 +214,29 @@ impl Implicit for Driver<'_> {
         let phase = self.phase;
         let target = self.phases[phase].steps[self.target];
         self.now = accepted.step.t;
+        self.cuts += accepted.cuts;
         let next = self.next(accepted.step.dt);
+        let planned = self.now == target.time;
+        self.counts.steps += 1;
+        self.counts.pieces += usize::from(!planned);
+        self.counts.newton += accepted.newton;
         let report = Report {
             phase,
             time: self.now,
-            planned: self.now == target.time,
+            planned,
             phase_end: self.phase != phase,
-            bulk_output: target.bulk_output && self.now == target.time,
+            bulk_output: target.bulk_output && planned,
             newton: accepted.newton,
+            counts: self.counts,
+            next: match next {
+                Next::Step { now, dt, .. } => {
+                    Some(Position { phase: self.phase, target: self.target, now, dt, cuts: self.cuts })
+                }
+                Next::Stop => None,
+            },
             problem: &mut *self.problem,
             u,
         };
-        self.counts.steps += 1;
-        self.counts.pieces += usize::from(!report.planned);
-        self.counts.newton += accepted.newton;
         let begun = Instant::now();
         self.observer.observe(report)?;
         self.counts.output += begun.elapsed();

@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::interface::{Interface, Residual, Surface, Tangent};
 use crate::loading::{Phase, Placement};
 use crate::petsc::{Gather, Step, Vector, Verdict};
+use crate::snapshot::Snapshot;
 
 /// The contact face, known whole on every rank.
 pub struct ContactFace {
@@ -94,6 +95,33 @@ impl ContactFace {
         Ok(())
     }
 
+    /// Where Newton's method had better begin than at the accepted displacements: (face node, distance along x, m).
+    ///
+    /// Nodes that stuck go with the indenter at the slip rate they had, and those on which it turns back at none. From
+    /// the steep side of a regularised law Newton's method lets node after node slip; from the flat side, where the
+    /// accepted displacements are as soon as the indenter moves on, it does not find back. None where the indenter goes
+    /// so far in the step that all will slip anyway: ten times what the drag, f of the pressure, displaces by the
+    /// measure of what the pressure does.
+    pub fn carried(&self, step: Step) -> Result<Vec<(usize, f64)>> {
+        let Self { interface, accepted, free, .. } = self;
+        if !interface.has_friction() {
+            return Ok(Vec::new());
+        }
+        let rate = self.phase()?.placement(step.t, step.dt).sliding_rate;
+        let normal = accepted.surface.displacement.iter().skip(1).step_by(2);
+        let deepest = normal.fold(0.0, |most: f64, u| most.max(u.abs()));
+        if (rate * step.dt).abs() > 10.0 * interface.largest_drag() * deepest {
+            return Ok(Vec::new());
+        }
+        let fields = interface.fields(accepted.placement, &accepted.surface)?;
+        let carried = |(node, (&pressure, &slip)): (usize, (&f64, &f64))| {
+            let turns = rate * slip < 0.0;
+            let moves = pressure > 0.0 && free[node].x > 0.0 && (turns || interface.grips(slip));
+            moves.then_some((node, (if turns { rate } else { rate - slip }) * step.dt))
+        };
+        Ok(fields.pressure.iter().zip(&fields.slip_rate).enumerate().filter_map(carried).collect())
+    }
+
     /// The Euclidean norm of `residual`, N/m.
     pub fn contact_norm(&self) -> f64 {
         self.residual.iter().map(|force| force.norm_squared()).sum::<f64>().sqrt()
@@ -147,6 +175,23 @@ impl ContactFace {
         self.interface.residual(*placement, surface, &mut self.residual)?;
         self.mask_residual();
         Ok(())
+    }
+
+    /// Adds the accepted state to a snapshot; the displacements are part of the solution.
+    pub fn save(&self, snapshot: &mut Snapshot) {
+        let State { surface, placement: Placement { approach, sliding, sliding_rate, approach_rate }, scale } =
+            &self.accepted;
+        snapshot.put("face", vec![*approach, *sliding, *sliding_rate, *approach_rate, *scale]);
+        snapshot.put("face-rate", surface.rate.clone());
+    }
+
+    /// Takes the accepted state, whose solution is `u`, from a snapshot.
+    pub fn restore(&mut self, snapshot: &Snapshot, u: &Vector) -> Result<()> {
+        let [approach, sliding, sliding_rate, approach_rate, scale] = snapshot.numbers("face")?;
+        self.accepted.placement = Placement { approach, sliding, sliding_rate, approach_rate };
+        self.accepted.scale = scale;
+        snapshot.fill("face-rate", &mut self.accepted.surface.rate)?;
+        self.gather.gather(u, &mut self.accepted.surface.displacement)
     }
 
     /// The contact at the accepted state.

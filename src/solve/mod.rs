@@ -10,12 +10,13 @@ use crate::error::{Error, Result};
 use crate::interface::{Fields, Interface, Surface, Totals};
 use crate::loading::{Phase, Placement};
 use crate::petsc::{Matrix, Step, Vector, Verdict};
+use crate::snapshot::Snapshot;
 
 pub use body::{Body, Moduli, Region, Solid};
 pub use condensed::{
     Backing, Compliance, Condensed, Following, Interior, LARGE_FACE, PeriodicColumn, Relaxation, Remembering, Source,
 };
-pub use driver::{Counts, Driver, Limits};
+pub use driver::{Counts, Driver, Limits, Position};
 pub use monolithic::Monolithic;
 
 /// A discretised contact problem in a form that TS and SNES can step.
@@ -37,10 +38,17 @@ pub trait TransientProblem {
     fn solve(&mut self, _b: &Vector, _x: &mut Vector) -> Result<()> {
         Err(Error::Internal("the tangent of this problem is a matrix".into()))
     }
+    /// Improves on `u`, the accepted state, as the point from which Newton's method begins.
+    fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()>;
     /// Judges a Newton iterate by the norm of its residual.
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
     /// Takes the accepted state to the end of an accepted step.
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()>;
+    /// Adds the accepted state, with the solution `u`, to a snapshot: all that later steps depend on, down to the last
+    /// bit.
+    fn save(&mut self, u: &Vector, snapshot: &mut Snapshot) -> Result<()>;
+    /// Takes the accepted state and `u` from a snapshot that is whole on every rank.
+    fn restore(&mut self, snapshot: &Snapshot, u: &mut Vector) -> Result<()>;
     /// The contact at the accepted state.
     fn contact(&mut self) -> Result<Contact<'_>>;
     /// The bulk fields at the accepted state `u`.
@@ -100,6 +108,10 @@ pub struct Report<'a> {
     pub bulk_output: bool,
     /// Newton iterations of the step.
     pub newton: usize,
+    /// What the run took up to here.
+    pub counts: Counts,
+    /// Where the run goes on; none at the end.
+    pub next: Option<Position>,
     /// The problem, to be asked for fields.
     pub problem: &'a mut dyn TransientProblem,
     /// The solution.

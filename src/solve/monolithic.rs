@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::interface::Interface;
 use crate::loading::Phase;
 use crate::petsc::{Gather, Matrix, Step, Vector, Verdict};
+use crate::snapshot::Snapshot;
 
 /// Bulk and interface in one sparse system: the residual is the force on every node.
 pub struct Monolithic {
@@ -93,6 +94,17 @@ impl TransientProblem for Monolithic {
         tangent.assemble()
     }
 
+    fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        let carried = self.face.carried(step)?;
+        let mut values = u.view_mut()?;
+        for (node, distance) in carried {
+            if let (_, Some(row)) = self.rows[node] {
+                values[row] += distance;
+            }
+        }
+        Ok(())
+    }
+
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
         let noise = self.face.noise();
         self.face.test(iteration, norm, self.tolerance, noise)
@@ -101,6 +113,21 @@ impl TransientProblem for Monolithic {
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {
         self.bulk.commit(step, u)?;
         self.face.commit(step, u)
+    }
+
+    fn save(&mut self, u: &Vector, snapshot: &mut Snapshot) -> Result<()> {
+        let mut order = self.body.natural_order(u)?;
+        order.save("u", u, snapshot)?;
+        self.bulk.save(&mut order, snapshot)?;
+        self.face.save(snapshot);
+        Ok(())
+    }
+
+    fn restore(&mut self, snapshot: &Snapshot, u: &mut Vector) -> Result<()> {
+        let order = self.body.natural_order(u)?;
+        order.restore("u", u, snapshot)?;
+        self.bulk.restore(&order, snapshot, u)?;
+        self.face.restore(snapshot, u)
     }
 
     fn contact(&mut self) -> Result<Contact<'_>> {

@@ -1,5 +1,7 @@
 //! Shared by the integration tests; each uses a part of it.
+#![allow(dead_code)]
 pub mod mpi;
+pub mod program;
 pub mod sample;
 
 use std::path::{Path, PathBuf};

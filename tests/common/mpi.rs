@@ -19,12 +19,14 @@ pub struct Case {
     pub body: Body,
     /// The directory is a disk of so many bytes of its own.
     pub disk: Option<usize>,
+    /// PETSc options, separated by spaces.
+    pub petsc: &'static str,
 }
 
 impl Case {
     /// A case on the common disk.
     pub const fn new(name: &'static str, ranks: &'static [usize], body: Body) -> Self {
-        Self { name, ranks, body, disk: None }
+        Self { name, ranks, body, disk: None, petsc: "" }
     }
 }
 
@@ -48,9 +50,10 @@ pub fn main(cases: &'static [Case]) {
 }
 
 fn run_body(cases: &[Case], name: &str, directory: &Path) {
-    let universe = mpi::initialize().unwrap();
-    let world = universe.world();
     let case = cases.iter().find(|case| case.name == name).unwrap();
+    let options: Vec<String> = case.petsc.split_whitespace().map(str::to_owned).collect();
+    let session = mpjr::petsc::Session::start(&options).unwrap();
+    let world = session.world();
     // A panic on one rank must end the others too: mpirun sees to that when a process aborts.
     if std::panic::catch_unwind(|| (case.body)(&world, directory)).is_err() {
         std::process::abort();
@@ -77,7 +80,7 @@ fn launch(case: &Case, ranks: usize) -> Result<(), Failed> {
 }
 
 /// What a command that mounts a disk of its own is to be started by, if that is possible here.
-fn mounting() -> Option<Command> {
+pub fn mounting() -> Option<Command> {
     [&["--user", "--map-root-user", "--mount"][..], &["--mount"]].into_iter().find_map(|how| {
         let mut command = Command::new("unshare");
         let works = command.args(how).args(["sh", "-c", "mount -t tmpfs tmpfs /mnt"]).output();
@@ -94,6 +97,8 @@ pub fn mpirun(ranks: usize) -> Command {
         .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
         .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
         .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
+        // Ranks that wait leave the core to those that do not.
+        .env("OMPI_MCA_mpi_yield_when_idle", "1")
         .env("OMPI_MCA_hwloc_base_binding_policy", "none")
         .args(["-n", &ranks.to_string()]);
     command

@@ -60,6 +60,7 @@ pub fn row(i: usize) -> HistoryRow {
         stick_fraction: 8.0 * v,
         max_penetration: 9.0 * v,
         newton_iterations: 10 * i,
+        traction_oscillation: 17.0 * v,
         energy: Energy {
             external_work: 11.0 * v,
             stored: 12.0 * v,
@@ -72,7 +73,7 @@ pub fn row(i: usize) -> HistoryRow {
 }
 
 /// The real columns of [`row`] other than time, with their factors.
-pub const COLUMNS: [(&str, f64); 15] = [
+pub const COLUMNS: [(&str, f64); 16] = [
     ("approach", 2.0),
     ("sliding", 3.0),
     ("normal_force", 4.0),
@@ -82,6 +83,7 @@ pub const COLUMNS: [(&str, f64); 15] = [
     ("stick_fraction", 8.0),
     ("max_penetration", 9.0),
     ("newton_iterations", 10.0),
+    ("traction_oscillation", 17.0),
     ("energy/external_work", 11.0),
     ("energy/stored", 12.0),
     ("energy/viscoelastic_dissipation", 13.0),

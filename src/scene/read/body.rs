@@ -1,10 +1,12 @@
-//! The `[layer]` or `[mesh]` table: the deformable body.
+//! The deformable body: the `[layer]` or `[mesh]` table, and which material fills what of it.
 
 use std::path::Path;
 
+use super::material;
 use crate::error::Result;
+use crate::rheology::Band;
 use crate::scene::keys::{Quantity, Section};
-use crate::scene::{Body, Element, Layer, MeshFile, Sides};
+use crate::scene::{Body, Element, Layer, Material, MeshFile, Sides};
 
 const ELEMENTS: [(&str, Element); 2] = [("q4", Element::Quad4), ("q4_bbar", Element::Quad4Bbar)];
 
@@ -82,4 +84,59 @@ fn names(section: &Section, key: &str) -> Result<Vec<String>> {
         }
     }
     Ok(names)
+}
+
+/// `[material]`, or one `[[material]]` for each stratum of a layer or region of a mesh, in a loading history that visits
+/// the times of `band`.
+pub(super) fn materials(root: &Section, body: &Body, band: Option<Band>) -> Result<Vec<Material>> {
+    let Ok(sections) = root.sections("material", "") else {
+        return Ok(vec![filling(&root.section("material")?, (body, true), band)?]);
+    };
+    let count = sections.len();
+    let mut list: Vec<Material> = Vec::new();
+    for (index, section) in sections.into_iter().enumerate() {
+        let region = section.optional_text("region", REGION)?;
+        let known = list.iter().position(|other| region.is_some() && other.region == region);
+        if let Some(first) = known {
+            return Err(section.error("region", format!("is the region of material {first} too; give another")));
+        }
+        let section = match &region {
+            Some(name) => section.called(format!("material.{name}")),
+            None => section,
+        };
+        let material = filling(&section, (body, index + 1 == count), band)?;
+        if matches!(body, Body::Mesh(_)) && region.is_none() && count > 1 {
+            return Err(section.missing("region", REGION));
+        }
+        list.push(material);
+    }
+    if list.is_empty() { Err(root.missing("material", "the [material] table")) } else { Ok(list) }
+}
+
+const REGION: &str = "the name of the physical surface that it fills";
+
+/// A material and what it fills of the body; `last` if none follows.
+fn filling(section: &Section, (body, last): (&Body, bool), band: Option<Band>) -> Result<Material> {
+    let material = material::read(section, &["region", "thickness"], band)?;
+    let (region, thickness) = (section.optional_text("region", REGION)?, thickness(section, body, last)?);
+    Ok(Material { region, thickness, ..material })
+}
+
+/// The thickness of a stratum, m: of all but the lowest.
+fn thickness(section: &Section, body: &Body, last: bool) -> Result<Option<f64>> {
+    const THICKNESS: Quantity = Quantity::positive("a positive thickness in m, from the contact face down");
+
+    match body {
+        Body::Mesh(_) if section.has("thickness") => {
+            Err(section.error("thickness", "is for the strata of a [layer]; give region, a physical surface"))
+        }
+        Body::Layer(_) if section.has("region") => {
+            Err(section.error("region", "is for a [mesh]; give thickness, that of a stratum of the layer"))
+        }
+        Body::Layer(_) if last && section.has("thickness") => {
+            Err(section.error("thickness", "remove it: the last material fills the rest of the layer"))
+        }
+        Body::Layer(_) if !last => section.number("thickness", THICKNESS).map(Some),
+        _ => Ok(None),
+    }
 }

@@ -15,6 +15,7 @@ use crate::bulk::{Arms, Series};
 use crate::error::Result;
 use crate::interface::Residual;
 use crate::petsc::{Step, Vector};
+use crate::snapshot::{NaturalOrder, Snapshot};
 
 /// How the body relaxes as a whole.
 pub struct Relaxation {
@@ -65,8 +66,20 @@ impl Backing for Following {
         self.softness
     }
 
+    fn takes_forces(&self) -> bool {
+        false
+    }
+
     fn commit(&mut self, step: Step, u: &Vector, _residual: &Residual) -> Result<()> {
         self.relaxation.as_mut().map_or(Ok(()), |relaxation| relaxation.arms.commit(step, u))
+    }
+
+    fn save(&mut self, order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()> {
+        self.relaxation.as_ref().map_or(Ok(()), |relaxation| relaxation.arms.save(order, snapshot))
+    }
+
+    fn restore(&mut self, order: &NaturalOrder, snapshot: &Snapshot, u: &Vector) -> Result<()> {
+        self.relaxation.as_mut().map_or(Ok(()), |relaxation| relaxation.arms.restore(order, snapshot, u))
     }
 
     fn bulk_fields(&mut self, face: &mut ContactFace, u: &Vector) -> Result<BulkFields> {

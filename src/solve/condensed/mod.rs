@@ -23,6 +23,7 @@ use crate::error::Result;
 use crate::interface::{Interface, Residual};
 use crate::loading::Phase;
 use crate::petsc::{Gather, Matrix, Step, Vector, Verdict};
+use crate::snapshot::{NaturalOrder, Snapshot};
 
 pub use compliance::Compliance;
 pub use following::{Following, Relaxation};
@@ -43,8 +44,14 @@ pub trait Backing {
     fn compliance(&self) -> Option<&Compliance>;
     /// The largest entry of C, m per N/m, on all ranks.
     fn softness(&self) -> f64;
+    /// Whether [`Self::commit`] needs the contact forces, and [`Self::free`] no rate.
+    fn takes_forces(&self) -> bool;
     /// Takes the memory to the end of an accepted step that ends at `u` under the contact forces -`residual`.
     fn commit(&mut self, step: Step, u: &Vector, residual: &Residual) -> Result<()>;
+    /// Adds the memory to a snapshot; `order` is that of the face.
+    fn save(&mut self, order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()>;
+    /// Takes the memory at the accepted state `u` from a snapshot that is whole on every rank.
+    fn restore(&mut self, order: &NaturalOrder, snapshot: &Snapshot, u: &Vector) -> Result<()>;
     /// The bulk fields at the accepted state `u`; `face` brings vectors of the face to all ranks.
     fn bulk_fields(&mut self, face: &mut ContactFace, u: &Vector) -> Result<BulkFields>;
 }
@@ -58,6 +65,8 @@ pub struct Condensed<B> {
     factor: Option<Factor>,
     /// The secant that the factor was made with.
     factored: f64,
+    /// The step that the factor was made for.
+    factored_for: Step,
     /// Solves since the last tangent.
     used: usize,
     /// Whether a factor may serve for later tangents.
@@ -81,9 +90,40 @@ impl<B: Backing> Condensed<B> {
             columns: SparseColumns::default(),
             factor: None,
             factored: f64::NAN,
+            factored_for: Step { t: 0.0, dt: 0.0 },
             used: 0,
             reuse: 2 * held.len() > LARGE_FACE,
         })
+    }
+}
+
+impl<B: Backing> Condensed<B> {
+    /// f += C R. On all ranks: PETSc keeps norms until it sees a vector written to, on each rank for itself.
+    fn add_contact(&self, f: &mut Vector) -> Result<()> {
+        let mut values = f.view_mut()?;
+        if let Some(compliance) = self.backing.compliance() {
+            let forces = self.face.residual.iter().enumerate().flat_map(|(i, r)| [(2 * i, r.x), (2 * i + 1, r.y)]);
+            compliance.add_displacements(forces, &mut values);
+        }
+        Ok(())
+    }
+
+    /// Brings the contact forces of the accepted state to balance with its displacements: R + T d with
+    /// (c 1 + C T) d = -G. A stiff penalty turns round-off in the gap into noise of the forces, which d takes out; the
+    /// displacements, whose digits are good, stay.
+    fn refine_forces(&mut self, step: Step, u: &Vector) -> Result<()> {
+        let (mut imbalance, mut correction) = (u.like()?, u.like()?);
+        // A backing that takes forces does not ask for the rate.
+        self.backing.free(step, u, u, &mut imbalance)?;
+        self.add_contact(&mut imbalance)?;
+        if self.factor.is_some() {
+            self.solve(&imbalance, &mut correction)?;
+            let d = correction.view()?;
+            for (row, force) in self.columns.multiply(|place| -d[place]) {
+                self.face.residual[row / 2][row % 2] += force;
+            }
+        }
+        Ok(())
     }
 }
 
@@ -97,11 +137,7 @@ impl<B: Backing> TransientProblem for Condensed<B> {
         self.face.try_residual(step, u, rate)?;
         self.face.set_scale(self.backing.softness() * self.face.contact_norm());
         self.backing.free(step, u, rate, f)?;
-        if let Some(compliance) = self.backing.compliance() {
-            let forces = self.face.residual.iter().enumerate().flat_map(|(i, r)| [(2 * i, r.x), (2 * i + 1, r.y)]);
-            compliance.add_displacements(forces, &mut f.view_mut()?);
-        }
-        Ok(())
+        self.add_contact(f)
     }
 
     fn tangent(&mut self, step: Step, u: &Vector, rate: &Vector, _tangent: &mut Matrix) -> Result<()> {
@@ -117,7 +153,7 @@ impl<B: Backing> TransientProblem for Condensed<B> {
         if !serves {
             // A singular system has no factor; the solve then says so by what it returns.
             self.factor = Factor::new(compliance, self.columns.clone(), secant).ok();
-            self.factored = secant;
+            (self.factored, self.factored_for) = (secant, step);
         }
         Ok(())
     }
@@ -125,22 +161,32 @@ impl<B: Backing> TransientProblem for Condensed<B> {
     fn multiply(&mut self, v: &Vector, product: &mut Vector) -> Result<()> {
         product.copy_from(v)?;
         product.scale(self.backing.secant())?;
-        let Some(compliance) = self.backing.compliance() else { return Ok(()) };
-        let v = v.view()?;
-        compliance.add_displacements(self.columns.multiply(|place| v[place]), &mut product.view_mut()?);
+        let (v, mut product) = (v.view()?, product.view_mut()?);
+        if let Some(compliance) = self.backing.compliance() {
+            compliance.add_displacements(self.columns.multiply(|place| v[place]), &mut product);
+        }
         Ok(())
     }
 
     fn solve(&mut self, b: &Vector, x: &mut Vector) -> Result<()> {
         self.used += 1;
-        let Some(compliance) = self.backing.compliance() else { return Ok(()) };
-        match &self.factor {
-            Some(factor) => factor.solve(compliance, &b.view()?, &mut x.view_mut()?),
-            None => {
-                x.view_mut()?.fill(f64::NAN);
+        let (b, mut x) = (b.view()?, x.view_mut()?);
+        match (&self.factor, self.backing.compliance()) {
+            (Some(factor), Some(compliance)) => factor.solve(compliance, &b, &mut x),
+            _ => {
+                x.fill(f64::NAN);
                 Ok(())
             }
         }
+    }
+
+    fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        let carried = self.face.carried(step)?;
+        let mut values = u.view_mut()?;
+        if !values.is_empty() {
+            carried.into_iter().for_each(|(node, distance)| values[2 * node] += distance);
+        }
+        Ok(())
     }
 
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
@@ -150,8 +196,43 @@ impl<B: Backing> TransientProblem for Condensed<B> {
 
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {
         self.face.commit(step, u)?;
-        self.face.accepted_residual()?;
+        if self.backing.takes_forces() {
+            self.face.accepted_residual()?;
+            self.refine_forces(step, u)?;
+        }
         self.backing.commit(step, u, &self.face.residual)
+    }
+
+    fn save(&mut self, u: &Vector, snapshot: &mut Snapshot) -> Result<()> {
+        let mut order = NaturalOrder::on_first_rank(u)?;
+        order.save("u", u, snapshot)?;
+        self.backing.save(&mut order, snapshot)?;
+        self.face.save(snapshot);
+        let Step { t, dt } = self.factored_for;
+        snapshot.put("condensed", vec![self.factored, t, dt, self.used as f64]);
+        if let Some(factor) = self.factor.as_ref().filter(|_| self.reuse) {
+            factor.save(snapshot);
+        }
+        Ok(())
+    }
+
+    fn restore(&mut self, snapshot: &Snapshot, u: &mut Vector) -> Result<()> {
+        let order = NaturalOrder::on_first_rank(u)?;
+        order.restore("u", u, snapshot)?;
+        self.backing.restore(&order, snapshot, u)?;
+        self.face.restore(snapshot, u)?;
+        let [factored, t, dt, used] = snapshot.numbers("condensed")?;
+        (self.factored, self.factored_for, self.used) = (factored, Step { t, dt }, used as usize);
+        self.factor = None;
+        if !self.reuse || !snapshot.has("factor") {
+            return Ok(());
+        }
+        // Its compliance is that of the step that it was made for.
+        self.backing.prepare(self.factored_for)?;
+        if let Some(compliance) = self.backing.compliance() {
+            self.factor = Factor::restore(snapshot, compliance)?;
+        }
+        Ok(())
     }
 
     fn contact(&mut self) -> Result<Contact<'_>> {

@@ -26,6 +26,7 @@ use crate::interface::Residual;
 use crate::mesh::Cell;
 use crate::parallel::agree;
 use crate::petsc::{Cholesky, Matrix, Step, Vector};
+use crate::snapshot::{NaturalOrder, Snapshot};
 
 /// How many step lengths are kept factorised: that of the phase, and that of a step which was cut or split.
 const KEPT: usize = 2;
@@ -127,8 +128,10 @@ impl Backing for Remembering {
 
     fn free(&mut self, _step: Step, u: &Vector, _rate: &Vector, y: &mut Vector) -> Result<()> {
         y.copy_from(u)?;
+        // On all ranks: PETSc keeps norms until it sees a vector written to, on each rank for itself.
+        let mut y = y.view_mut()?;
         if let Some(interior) = &self.interior {
-            for (y, free) in y.view_mut()?.iter_mut().zip(&interior.face) {
+            for (y, free) in y.iter_mut().zip(&interior.face) {
                 *y -= free;
             }
         }
@@ -147,9 +150,24 @@ impl Backing for Remembering {
         self.softness
     }
 
+    fn takes_forces(&self) -> bool {
+        true
+    }
+
     fn commit(&mut self, step: Step, _u: &Vector, residual: &Residual) -> Result<()> {
         let mine = self.interior.as_mut().map_or(Ok(()), |interior| interior.commit(step, residual));
         self.prepared = None;
+        agree(&self.comm, mine)
+    }
+
+    fn save(&mut self, _order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()> {
+        let mine = self.interior.as_ref().map_or(Ok(()), |interior| interior.save(snapshot));
+        agree(&self.comm, mine)
+    }
+
+    fn restore(&mut self, _order: &NaturalOrder, snapshot: &Snapshot, _u: &Vector) -> Result<()> {
+        self.prepared = None;
+        let mine = self.interior.as_mut().map_or(Ok(()), |interior| interior.restore(snapshot));
         agree(&self.comm, mine)
     }
 
@@ -233,6 +251,18 @@ impl Interior {
         drop(load);
         self.solvers[0].factor.solve(&self.load, &mut self.u)?;
         self.bulk.commit(step, &self.u)
+    }
+
+    fn save(&self, snapshot: &mut Snapshot) -> Result<()> {
+        let mut order = self.body.natural_order(&self.u)?;
+        order.save("body", &self.u, snapshot)?;
+        self.bulk.save(&mut order, snapshot)
+    }
+
+    fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
+        let order = self.body.natural_order(&self.u)?;
+        order.restore("body", &mut self.u, snapshot)?;
+        self.bulk.restore(&order, snapshot, &self.u)
     }
 
     fn fields(&mut self) -> Result<BulkFields> {

@@ -1,0 +1,159 @@
+//! One scene, from its typed form to its results: what `mpjr run` and `mpjr sweep` have in common.
+
+use std::path::Path;
+use std::time::{Instant, SystemTime};
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use super::interrupt::Interrupt;
+use super::origin::{Begun, Origin};
+use super::progress::Progress;
+use super::record::{Checkpoints, Recording};
+use super::summary::Outcome;
+use crate::composition::{self, Problem};
+use crate::error::{Error, Result};
+use crate::loading::Phase;
+use crate::mesh::Mesh;
+use crate::output::{BulkPlan, HistoryRow, Metadata, Plan, Recorder, Status, checkpoint, clock, reader::Results};
+use crate::parallel::agree;
+use crate::petsc::Session;
+use crate::scene::Scene;
+use crate::solve::Driver;
+
+/// What to solve, by whom, and where the results go.
+pub struct Job<'a> {
+    /// MPI and PETSc.
+    pub session: &'a Session,
+    /// The ranks that solve it.
+    pub comm: &'a SimpleCommunicator,
+    /// What may stop it.
+    pub interrupt: &'a Interrupt,
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The file that it was read from: others are looked for beside it.
+    pub file: &'a Path,
+    /// The result file.
+    pub out: &'a Path,
+    /// Where it starts from.
+    pub origin: Origin<'a>,
+    /// Whether the state at the end is kept in the checkpoint, for other runs to go on from.
+    pub keep_state: bool,
+}
+
+/// What came of it.
+pub struct Done {
+    /// Whether the solver got to the end.
+    pub result: Result<()>,
+    /// What it took.
+    pub outcome: Outcome,
+    /// The last row of the history.
+    pub last: HistoryRow,
+}
+
+/// Solves the scene and records it; `progress` is shown where it is not silent. Collective.
+///
+/// # Errors
+/// When there was nothing to solve with or no file to write to. Every rank returns the same.
+pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<Done> {
+    let (comm, scene) = (job.comm, job.scene);
+    let (clock, started) = (Instant::now(), SystemTime::now());
+    let Problem { mut strategy, mut tangent, mut u, phases, settings, mesh } =
+        composition::build(comm, scene, job.file)?;
+    let begun = job.origin.load(comm, job.out, &phases)?;
+    if let Some(begun) = &begun {
+        strategy.restore(&begun.snapshot, &mut u)?;
+    }
+    let opened = if comm.rank() == 0 { open(job, started, &mesh, &phases, begun.as_ref()).map(Some) } else { Ok(None) };
+    let recorder = agree(comm, opened)?;
+    let started = match (job.origin, &begun) {
+        (Origin::Checkpoint, Some(begun)) => begun.started.clone(),
+        _ => clock::iso_utc(started),
+    };
+    let checkpoints = Checkpoints {
+        results: job.out.to_owned(),
+        every: scene.output.checkpoint_every,
+        interrupt: job.interrupt,
+        scene: scene.to_toml(),
+        started,
+    };
+    let progress = progress(phases.iter().map(|phase| phase.steps.len()).sum());
+    let every = scene.output.interface_every;
+    let done = begun.as_ref().map_or(0, |begun| begun.planned_steps);
+    let mut recording = Recording::new((comm, recorder), (every, &phases), checkpoints, progress).after(done);
+    let setup = clock.elapsed();
+    let mut driver = Driver::new(strategy.as_mut(), &mut recording, &phases);
+    if let Some(begun) = &begun {
+        driver = driver.at(begun.position, begun.counts);
+    }
+    let mut result = driver.run(comm, settings, &mut tangent, &mut u);
+    let counts = driver.counts();
+    if result.is_ok() && job.keep_state {
+        result = recording.keep_state(strategy.as_mut(), &u, counts);
+    }
+    let status = match &result {
+        Ok(()) => Status::Complete,
+        Err(Error::Solver(_) | Error::Domain(_)) => Status::NotConverged,
+        Err(_) => Status::Stopped,
+    };
+    let outcome = Outcome { status, ranks: comm.size(), setup, total: clock.elapsed(), counts };
+    let (finished, last) = recording.finish(status);
+    // What the solver says comes first; a file that could not be closed matters only when it did its work.
+    let result = result.and(agree(comm, finished));
+    if result.is_ok() && !job.keep_state && comm.rank() == 0 {
+        // It has done its work; one that stays does no harm.
+        let _ = checkpoint::remove(job.out);
+    }
+    Ok(Done { result, outcome, last })
+}
+
+/// The recorder of the run, on the rank that writes.
+fn open(job: &Job<'_>, started: SystemTime, mesh: &Mesh, phases: &[Phase], begun: Option<&Begun>) -> Result<Recorder> {
+    let scene = job.scene;
+    let plan = plan(scene, mesh, phases);
+    if let (Origin::Checkpoint, Some(begun)) = (job.origin, begun) {
+        return Recorder::resume(job.out, plan, begun.rows);
+    }
+    let metadata = Metadata {
+        title: scene.title.clone(),
+        scene: scene.to_toml(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        git_commit: env!("MPJR_GIT_COMMIT").into(),
+        petsc_version: job.session.petsc_version(),
+        ranks: job.comm.size() as usize,
+        started,
+    };
+    let recorder = Recorder::create(job.out, &metadata, plan, &HistoryRow::default())?;
+    // One that is left belongs to the file that was replaced.
+    checkpoint::remove(job.out)?;
+    if let Origin::Shared { results, .. } = job.origin {
+        recorder.append(&Results::open(results)?)?;
+    }
+    Ok(recorder)
+}
+
+fn plan(scene: &Scene, mesh: &Mesh, phases: &[Phase]) -> Plan {
+    let steps: usize = phases.iter().map(|phase| phase.steps.len()).sum();
+    let ends = phases.len();
+    Plan {
+        // A step that is cut adds rows.
+        history_rows: 1 + steps + steps / 8,
+        phase_names: phases.iter().map(|phase| phase.name.clone()).collect(),
+        energy: false,
+        interface_rows: steps.checked_div(scene.output.interface_every).map_or(ends, |rows| rows + ends),
+        interface_x: mesh.face.x.clone(),
+        bulk: bulk_plan(scene, mesh, phases),
+    }
+}
+
+/// The bulk fields to expect; none when the scene asks for none.
+fn bulk_plan(scene: &Scene, mesh: &Mesh, phases: &[Phase]) -> Option<BulkPlan> {
+    if scene.output.bulk_at.is_empty() {
+        return None;
+    }
+    Some(BulkPlan {
+        frames: phases.iter().flat_map(|phase| &phase.steps).filter(|target| target.bulk_output).count(),
+        coordinates: mesh.nodes.iter().map(|node| [node.x, node.y]).collect(),
+        cells: mesh.cells.iter().map(|cell| cell.four().map(i64::from)).collect(),
+    })
+}

@@ -1,0 +1,150 @@
+//! `mpjr plot`: figures from results, from a sweep's directory, or of materials.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use toml::Table;
+
+use super::fit::PowerLaw;
+use crate::error::{Error, Result};
+use crate::plot::Sheet;
+use crate::plot::material::{self, Solid};
+use crate::plot::results::{self, Run};
+use crate::plot::sweep::{self, Sweep};
+use crate::rheology::Fractional;
+use crate::scene;
+
+/// The arguments of `mpjr plot`.
+#[derive(Args)]
+#[command(after_help = figures_help())]
+pub struct PlotArguments {
+    /// A result file, the directory of a sweep, or a material
+    #[arg(value_name = "FILE.h5|DIR|MATERIAL.toml")]
+    input: PathBuf,
+    /// Figures to draw [default: all that the input supports]; after a material, further materials to draw beside it
+    #[arg(value_name = "FIGURE")]
+    figures: Vec<String>,
+    /// Where the figures go, made if need be
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    out: PathBuf,
+    /// Beside materials, the power law E(t) = E t^-ALPHA / Gamma(1 - ALPHA) they stand for, with G = E/(2 (1 + nu))
+    #[arg(long, value_name = "E,ALPHA")]
+    fractional: Option<PowerLaw>,
+}
+
+/// A figure: the stem of its files, and what it shows.
+type Drawing = (String, Sheet);
+
+/// Draws what was asked for and prints the names of the files.
+pub fn run(arguments: &PlotArguments) -> Result<()> {
+    let drawings = drawings(arguments)?;
+    std::fs::create_dir_all(&arguments.out).map_err(|error| Error::file(&arguments.out, error))?;
+    for (stem, sheet) in drawings {
+        for file in sheet.write(&arguments.out.join(stem))? {
+            println!("{}", file.display());
+        }
+    }
+    Ok(())
+}
+
+fn drawings(arguments: &PlotArguments) -> Result<Vec<Drawing>> {
+    let input = &arguments.input;
+    let is_material = input.extension().is_some_and(|end| end == "toml");
+    if arguments.fractional.is_some() && !is_material {
+        return Err(Error::Usage("--fractional: only beside a material; the first argument is none".into()));
+    }
+    if input.is_dir() {
+        of_sweep(input, &arguments.figures)
+    } else if is_material {
+        of_materials(arguments)
+    } else {
+        of_run(input, &arguments.figures)
+    }
+}
+
+/// STEM-FIGURE for each figure of a result file.
+fn of_run(file: &Path, asked: &[String]) -> Result<Vec<Drawing>> {
+    let known: Vec<&str> = results::FIGURES.iter().map(|kind| kind.name).collect();
+    check(asked, &known, "a result file")?;
+    let run = Run::open(file)?;
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let wanted = |kind: &&results::Kind| match asked {
+        [] => kind.possible(&run),
+        asked => asked.iter().any(|name| name == kind.name),
+    };
+    let draw = |kind: &results::Kind| Ok((format!("{stem}-{}", kind.name), kind.of(&run)?));
+    results::FIGURES.iter().filter(wanted).map(draw).collect()
+}
+
+/// The figures of a sweep by their names alone.
+fn of_sweep(directory: &Path, asked: &[String]) -> Result<Vec<Drawing>> {
+    let known: Vec<&str> = sweep::FIGURES.iter().map(|kind| kind.name).collect();
+    check(asked, &known, "the directory of a sweep")?;
+    let (sweep, unfinished) = Sweep::open(directory)?;
+    for file in unfinished {
+        eprintln!("mpjr: {}: not finished, and left out", file.display());
+    }
+    let wanted = |kind: &&sweep::Kind| asked.is_empty() || asked.iter().any(|name| name == kind.name);
+    Ok(sweep::FIGURES.iter().filter(wanted).map(|kind| (kind.name.to_owned(), (kind.sheet)(&sweep))).collect())
+}
+
+/// All materials on one sheet, named after the first.
+fn of_materials(arguments: &PlotArguments) -> Result<Vec<Drawing>> {
+    let (others, asked): (Vec<_>, Vec<_>) = arguments.figures.iter().cloned().partition(|name| name.ends_with(".toml"));
+    check(&asked, &["material"], "a material")?;
+    let files: Vec<PathBuf> =
+        std::iter::once(arguments.input.clone()).chain(others.iter().map(PathBuf::from)).collect();
+    let materials = files.iter().map(|file| read_material(file)).collect::<Result<Vec<_>>>()?;
+    let stem = |file: &PathBuf| file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let solids: Vec<Solid> = match materials.as_slice() {
+        [material] => vec![Solid::of(material, "")],
+        materials => files.iter().zip(materials).map(|(file, material)| Solid::of(material, &stem(file))).collect(),
+    };
+    let nu = materials[0].poisson_ratio;
+    let shear = |PowerLaw(law): PowerLaw| Fractional { modulus: law.modulus / (2.0 * (1.0 + nu)), order: law.order };
+    let sheet = material::sheet(&solids, arguments.fractional.map(shear));
+    Ok(vec![(format!("{}-material", stem(&files[0])), sheet)])
+}
+
+/// The `[material]` table of a file, read as that of a scene is.
+fn read_material(file: &Path) -> Result<scene::Material> {
+    let text = std::fs::read_to_string(file).map_err(|error| Error::file(file, error))?;
+    let mut table = scene::parse(&text, file)?;
+    if !table.contains_key("material") {
+        return Err(Error::scene(file, "material", "missing; a material file, or a scene, has a [material] table"));
+    }
+    if !table.contains_key("layer") && !table.contains_key("mesh") {
+        let rest: Table = scene::parse(REST_OF_A_SCENE, file)?;
+        for (key, value) in rest {
+            table.entry(key).or_insert(value);
+        }
+    }
+    let mut materials = scene::from_table(&table, file)?.materials;
+    match (materials.pop(), materials.is_empty()) {
+        (Some(material), true) => Ok(material),
+        _ => Err(Error::scene(file, "material", "is several; give each as a file of its own")),
+    }
+}
+
+/// What a scene has besides its material.
+const REST_OF_A_SCENE: &str = "
+layer = { width = 1.0, depth = 1.0, cells = [2, 2], sides = \"periodic\" }
+indenter = { profile = \"harmonic\", amplitude = 1e-4, wavelength = 1.0 }
+contact = { penalty = 1.0 }
+phase = [{ duration = 1.0, steps = 1 }]
+";
+
+/// Refuses a figure that the kind of input does not have.
+fn check(asked: &[String], known: &[&str], input: &str) -> Result<()> {
+    match asked.iter().find(|name| !known.contains(&name.as_str())) {
+        Some(name) => Err(Error::Usage(format!("no figure {name}; {input} has: {}", known.join(", ")))),
+        None => Ok(()),
+    }
+}
+
+fn figures_help() -> String {
+    let line = |(name, shows): (&str, &str)| format!("  {name:<12} {shows}\n");
+    let of_run: String = results::FIGURES.iter().map(|kind| line((kind.name, kind.shows))).collect();
+    let of_sweep: String = sweep::FIGURES.iter().map(|kind| line((kind.name, kind.shows))).collect();
+    format!("Figures of a result file:\n{of_run}\nFigures of a sweep:\n{of_sweep}")
+}

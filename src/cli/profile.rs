@@ -1,0 +1,81 @@
+//! What `mpjr check` says of the indenter's profile.
+
+use std::fmt::Write;
+
+use crate::composition::{Finest, Shape, Stretch};
+use crate::scene::{Indenter, Scene};
+
+/// A few lines about the profile over the face, with a sketch, and warnings of what a run would miss.
+pub fn describe(scene: &Scene, shape: &Shape, face: Stretch) -> String {
+    const COLUMNS: usize = 64;
+    let survey = &shape.survey;
+    let [low, high] = survey.range();
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = write!(text, "profile:       {}", name(&scene.indenter));
+    if let Some(detail) = &shape.detail {
+        let _ = write!(text, ": {detail}");
+    }
+    let _ = write!(
+        text,
+        "\n               over the face h = {low:.3e} to {high:.3e} m, rms height {:.3e} m, rms slope {:.3e}",
+        survey.rms_height(),
+        survey.rms_slope()
+    );
+    let _ = write!(text, "\n               {}", survey.sketch(COLUMNS));
+    let cell = face.cell();
+    match shape.finest {
+        Some(Finest::Wavelength(length)) => {
+            let _ = write!(text, "\n               {:.1} cells to the shortest wave ({length} m)", length / cell);
+        }
+        Some(Finest::Spacing(length)) => {
+            let _ = write!(text, "\n               {:.2} sampling points to a cell", cell / length);
+        }
+        None => {}
+    }
+    for warning in warnings(scene, shape, face) {
+        let _ = write!(text, "\nwarning:       {warning}");
+    }
+    text
+}
+
+fn name(indenter: &Indenter) -> String {
+    match indenter {
+        Indenter::Harmonic { .. } => "harmonic".to_owned(),
+        Indenter::Parabola { .. } => "parabola".to_owned(),
+        Indenter::Circle { .. } => "circle".to_owned(),
+        Indenter::Wedge { .. } => "wedge".to_owned(),
+        Indenter::Expression { formula } => format!("expression h = {formula}"),
+        Indenter::Sampled { file, .. } => format!("sampled {file:?}"),
+        Indenter::Rough { seed, .. } => format!("rough, seed {seed}"),
+    }
+}
+
+/// What the mesh does not see of the profile, and contact that is not where one expects it.
+fn warnings(scene: &Scene, shape: &Shape, face: Stretch) -> Vec<String> {
+    const FEWEST: f64 = 4.0;
+    let cell = face.cell();
+    let mut list = Vec::new();
+    match shape.finest {
+        Some(Finest::Wavelength(length)) if length / cell < FEWEST * (1.0 - 1e-9) => list.push(format!(
+            "fewer than {FEWEST} cells to the shortest wave: the mesh sees another profile; give at least {:.0} cells",
+            (FEWEST * face.width() / length).ceil()
+        )),
+        Some(Finest::Spacing(length)) if cell > length * (1.0 + 1e-6) => list.push(format!(
+            "the file is finer than the mesh: nodes are {cell:.3e} m apart, sampling points {length:.3e} m"
+        )),
+        _ => {}
+    }
+    let [low, high] = shape.survey.range();
+    if low.abs() > 1e-3 * (high - low) {
+        list.push(match low < 0.0 {
+            true => format!("the profile reaches below 0: contact begins already at an approach of {low:.3e} m"),
+            false => format!("the profile stays above 0: contact begins only at an approach of {low:.3e} m"),
+        });
+    }
+    let deepest = scene.phases.iter().filter_map(|phase| phase.approach).fold(0.0, f64::max);
+    if deepest <= low {
+        list.push(format!("the indenter never touches the face where it starts: its approach ends at {deepest:.3e} m"));
+    }
+    list
+}

@@ -1,0 +1,67 @@
+//! `summary.csv`: one row per case, with its varied values and final figures.
+
+use super::folder::{Folder, State, replace};
+use crate::error::Result;
+use crate::output::reader::Results;
+use crate::scene::sweep::Sweep;
+
+/// The columns of the history of which the last value is given, with `energy/` ones where a run has them.
+const FIGURES: [&str; 16] = [
+    "time",
+    "approach",
+    "sliding",
+    "normal_force",
+    "tangential_force",
+    "hysteretic_force",
+    "contact_fraction",
+    "stick_fraction",
+    "max_penetration",
+    "newton_iterations",
+    "energy/external_work",
+    "energy/stored",
+    "energy/viscoelastic_dissipation",
+    "energy/friction_dissipation",
+    "energy/penalty",
+    "energy/imbalance",
+];
+
+/// Writes the file anew from what is in the directory.
+pub fn write(sweep: &Sweep, folder: &Folder) -> Result<()> {
+    let before = ["case"].into_iter().chain(sweep.keys.iter().map(String::as_str));
+    let after = ["status", "exit_code", "reason", "wall_seconds"].into_iter().chain(FIGURES);
+    let mut text = line(before.chain(after).map(str::to_owned));
+    for (index, case) in sweep.cases.iter().enumerate() {
+        let state = folder.state(index, &case.scene);
+        let record = folder.record(index).unwrap_or_default();
+        let (exit, reason) = match &state {
+            State::Failed(record) => (record.exit.to_string(), record.reason.clone()),
+            State::Complete => ("0".to_owned(), String::new()),
+            _ => (String::new(), String::new()),
+        };
+        let results = match &state {
+            State::Missing => None,
+            _ => Results::open(&folder.results(index)).ok(),
+        };
+        let figure = |name: &str| {
+            let values = results.as_ref().and_then(|results| results.history(name).ok());
+            values.and_then(|values| values.last().copied()).map_or_else(String::new, |value| format!("{value:?}"))
+        };
+        let wall = match &state {
+            State::Missing => String::new(),
+            _ => format!("{:.3}", record.wall_seconds),
+        };
+        let cells = std::iter::once(index.to_string()).chain(case.values.iter().cloned());
+        let cells = cells.chain([state.word().to_owned(), exit, reason, wall]).chain(FIGURES.map(figure));
+        text.push_str(&line(cells));
+    }
+    replace(&folder.path().join("summary.csv"), &text)
+}
+
+/// A line of a table separated by commas (RFC 4180).
+fn line(cells: impl Iterator<Item = String>) -> String {
+    let quoted = |cell: String| match cell.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", cell.replace('"', "\"\"")),
+        false => cell,
+    };
+    cells.map(quoted).collect::<Vec<_>>().join(",") + "\n"
+}

@@ -1,0 +1,211 @@
+//! The indenter's profile: the file it is in, what the face will ask of it, and what it looks like.
+
+use std::path::Path;
+
+use super::{Stretch, phases};
+use crate::error::{Error, Result};
+use crate::expression::Expression;
+use crate::profile::{
+    Circle, Formula, Harmonic, Parabola, Point, Profile, Repeated, Rms, Rough, Roughness, Sampled, Survey, Wedge,
+    profilometer,
+};
+use crate::scene::{self, Extend, Indenter, Scene};
+
+/// A profile made ready, and what is known of it.
+pub struct Shape {
+    /// The profile.
+    pub profile: Box<dyn Profile>,
+    /// What decides how fine a mesh must be to see all of it.
+    pub finest: Option<Finest>,
+    /// What the scene does not say: "1024 points, ...".
+    pub detail: Option<String>,
+    /// The profile over the face before it slides.
+    pub survey: Survey,
+}
+
+/// The finest detail of a profile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Finest {
+    /// Its shortest wave, m.
+    Wavelength(f64),
+    /// The mean distance of its sampling points, m.
+    Spacing(f64),
+}
+
+/// The elevations that the profile of the scene in `file` needs: x, h of each sampling point, m; none for a profile
+/// that has no file.
+///
+/// # Errors
+/// [`Error::File`] when it cannot be read, [`Error::Scene`] with its line when its content is wrong.
+pub fn elevations(scene: &Scene, file: &Path) -> Result<Vec<f64>> {
+    let Indenter::Sampled { file: name, .. } = &scene.indenter else { return Ok(Vec::new()) };
+    let path = file.parent().unwrap_or(Path::new("")).join(name);
+    let bytes = std::fs::read(&path).map_err(|error| {
+        Error::file(&path, format!("cannot be read: {error}; it is indenter.file of {}", file.display()))
+    })?;
+    // Comments may be in any encoding.
+    let points = profilometer::parse(&String::from_utf8_lossy(&bytes))
+        .map_err(|reason| Error::scene(file, "indenter.file", format!("{name:?}: {reason}")))?;
+    Ok(points.iter().flat_map(|point| [point.x, point.height]).collect())
+}
+
+/// The profile of the scene in `file` over its contact face, with the [`elevations`] it needs. Under periodic sides every
+/// profile repeats with the layer's period.
+///
+/// # Errors
+/// [`Error::Scene`] when the profile is not known everywhere that the loading history takes the face.
+pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], face: Stretch) -> Result<Shape> {
+    let repeat = |profile: Box<dyn Profile>, centre: f64| match face.periodic {
+        true => Box::new(Repeated { profile, centre, period: face.width() }),
+        false => profile,
+    };
+    let wrong = |key: &str, reason: String| Error::scene(file, format!("indenter.{key}"), reason);
+    let (mut finest, mut detail) = (None, None);
+    let profile: Box<dyn Profile> = match scene.indenter {
+        Indenter::Harmonic { amplitude, wavelength } => {
+            finest = Some(Finest::Wavelength(wavelength));
+            Box::new(Harmonic { amplitude, wavelength })
+        }
+        Indenter::Parabola { radius, centre } => repeat(Box::new(Parabola { radius, centre }), centre),
+        Indenter::Circle { radius, centre } => repeat(Box::new(Circle { radius, centre }), centre),
+        Indenter::Wedge { slope, centre } => repeat(Box::new(Wedge { slope, centre }), centre),
+        Indenter::Expression { ref formula } => {
+            let expression = Expression::parse(formula, &["x"])
+                .map_err(|fault| wrong("formula", format!("{formula:?}, {fault}")))?;
+            let profile = Formula { expression };
+            check_formula(&profile, scene, face).map_err(|reason| wrong("formula", format!("{formula:?} {reason}")))?;
+            repeat(Box::new(profile), 0.5 * face.width())
+        }
+        Indenter::Sampled { .. } => {
+            let points = elevations.chunks_exact(2).map(|pair| Point { x: pair[0], height: pair[1] }).collect();
+            let profile = sampled(points, (scene, file), face)?;
+            let (count, span) = (elevations.len() / 2, elevations[elevations.len() - 2] - elevations[0]);
+            finest = Some(Finest::Spacing(span / (count - 1) as f64));
+            let repeats = profile.period().map_or(String::new(), |period| format!(", repeating after {period:?} m"));
+            detail = Some(format!("{count} points over {span:?} m{repeats}"));
+            Box::new(profile)
+        }
+        Indenter::Rough { hurst, rms, shortest, longest, period, seed } => {
+            let rms = match rms {
+                scene::Rms::RmsSlope(slope) => Rms::Slope(slope),
+                scene::Rms::RmsHeight(height) => Rms::Height(height),
+            };
+            let roughness = Roughness { hurst, rms, shortest, longest, period, seed };
+            let waves = waves(&roughness).map_err(|(key, reason)| wrong(key, reason))?;
+            finest = Some(Finest::Wavelength(shortest));
+            detail = Some(format!("{waves} waves, repeating after {period:?} m"));
+            Box::new(Rough::new(roughness))
+        }
+    };
+    let survey = survey(&*profile, face).map_err(|error| wrong("profile", error.to_string()))?;
+    Ok(Shape { profile, finest, detail, survey })
+}
+
+/// Points on every cell of the face for what is checked or measured by sampling, and the most of them.
+const POINTS_PER_CELL: usize = 8;
+const MOST_POINTS: usize = 200_000;
+
+fn survey(profile: &dyn Profile, face: Stretch) -> Result<Survey> {
+    let pieces = (POINTS_PER_CELL * face.edges).clamp(512, MOST_POINTS);
+    Survey::new(profile, [face.from, face.to], pieces)
+}
+
+/// The stretch of the profile, m, that the face meets over the whole history; under periodic sides one period is all
+/// there is.
+fn reach(scene: &Scene, face: Stretch) -> [f64; 2] {
+    if face.periodic {
+        return [face.from, face.to];
+    }
+    let ranges = phases(scene).iter().map(|phase| phase.sliding_range()).collect::<Vec<_>>();
+    let least = ranges.iter().map(|range| range[0]).fold(0.0, f64::min);
+    let greatest = ranges.iter().map(|range| range[1]).fold(0.0, f64::max);
+    [face.from - greatest, face.to - least]
+}
+
+/// A formula is finite wherever the face meets it, as far as sampling can tell, and has no jump where it repeats.
+fn check_formula(profile: &Formula, scene: &Scene, face: Stretch) -> std::result::Result<(), String> {
+    let [from, to] = reach(scene, face);
+    let pieces = ((to - from) / face.width() * (POINTS_PER_CELL * face.edges) as f64) as usize;
+    let survey = Survey::new(profile, [from, to], pieces.clamp(512, MOST_POINTS)).map_err(|error| error.to_string())?;
+    let heights = [survey.points[0].height, survey.points[survey.points.len() - 1].height];
+    let [low, high] = survey.range();
+    if face.periodic && (heights[1] - heights[0]).abs() > 1e-6 * (high - low) {
+        return Err(format!(
+            "must be the same at both sides of a periodic layer, got {:e} m at x = 0 and {:e} m at x = {:?} m",
+            heights[0],
+            heights[1],
+            face.width()
+        ));
+    }
+    Ok(())
+}
+
+/// The profile through the points of a file, repeating as the scene says.
+fn sampled(points: Vec<Point>, (scene, file): (&Scene, &Path), face: Stretch) -> Result<Sampled> {
+    let wrong = |key: &str, reason: String| Error::scene(file, key, reason);
+    let Indenter::Sampled { extend: Extend::Periodic, period, .. } = scene.indenter else {
+        return bounded(points, scene, face).map_err(|reason| wrong("indenter.file", reason));
+    };
+    let period = sampled_period(&points, period).map_err(|reason| wrong("indenter.period", reason))?;
+    if face.periodic {
+        scene::whole_periods(face.width(), "periods of the profile", period)
+            .map_err(|reason| wrong("layer.width", format!("{reason}; or give indenter.period")))?;
+    }
+    Ok(Sampled::new(points, Some(period)))
+}
+
+/// The period of a repeating sampled profile: what the scene says, or what the points say by themselves.
+fn sampled_period(points: &[Point], said: Option<f64>) -> std::result::Result<f64, String> {
+    let (first, last) = (points[0], points[points.len() - 1]);
+    let span = last.x - first.x;
+    let Some(period) = said else {
+        return Sampled::natural_period(points).ok_or_else(|| {
+            "missing, and required where the file's spacing is not uniform and its last elevation is not \
+                          its first: give the distance in m after which the profile repeats"
+                .to_owned()
+        });
+    };
+    if period < span * (1.0 - 1e-12) {
+        return Err(format!("must be at least the length of the file ({span:?} m), got {period:?}"));
+    }
+    if period <= span * (1.0 + 1e-12) && first.height != last.height {
+        return Err(format!(
+            "is the length of the file, whose ends must then have the same elevation, got {:?} and {:?} m",
+            first.height, last.height
+        ));
+    }
+    Ok(period)
+}
+
+/// The bounded profile through `points`, which covers what the face meets.
+fn bounded(points: Vec<Point>, scene: &Scene, face: Stretch) -> std::result::Result<Sampled, String> {
+    let (first, last) = (points[0].x, points[points.len() - 1].x);
+    let [from, to] = reach(scene, face);
+    let profile = Sampled::new(points, None);
+    if profile.at(from).is_ok() && profile.at(to).is_ok() {
+        return Ok(profile);
+    }
+    Err(format!(
+        "its x must cover {from:?} to {to:?} m (a face of {:?} m, and the sliding of all phases), got {first:?} to \
+         {last:?} m; give a longer profile, slide less, or say extend = \"periodic\"",
+        face.width()
+    ))
+}
+
+/// A rough profile has waves, and not too many to be added up; how many.
+fn waves(roughness: &Roughness) -> std::result::Result<usize, (&'static str, String)> {
+    const MOST: usize = 10_000;
+    let numbers = roughness.waves();
+    let Roughness { shortest, longest, period, .. } = *roughness;
+    if numbers.is_empty() {
+        let reason = format!(
+            "must have a wave of a whole fraction of it between shortest ({shortest:?} m) and longest ({longest:?} m), got {period:?}"
+        );
+        return Err(("period", reason));
+    }
+    if *numbers.end() > MOST {
+        let reason = format!("makes {} waves in a period of {period:?} m; at most {MOST} are added up", numbers.end());
+        return Err(("shortest", reason));
+    }
+    Ok(numbers.count())
+}

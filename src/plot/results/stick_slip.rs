@@ -1,0 +1,92 @@
+//! Where the face sticks, slips and has no contact, in time.
+
+use super::{Interface, Run, nearest};
+use crate::error::Result;
+use crate::output::reader::Field;
+use crate::plot::{Axis, Colouring, Map, Panel, Raster, Sheet};
+use crate::scene::Friction;
+
+/// Fields of the map along the time.
+const COLUMNS: usize = 900;
+
+/// The approach, the transition to sliding, and the whole history.
+pub fn sheet(run: &Run) -> Result<Sheet> {
+    let interface = run.interface()?;
+    let state =
+        State { run, pressure: run.results.interface("pressure")?, slip_rate: run.results.interface("slip_rate")? };
+    let t0 = run.approach_time();
+    let end = interface.time[interface.time.len() - 1];
+    let mut panels = Vec::new();
+    if t0 > 0.0 {
+        panels.push(map(&interface, &state, (0.0, t0.min(end)), "(a) approach", "time t, s"));
+    }
+    if let Some(row) = run.history.sliding_start() {
+        let all_slips = run.history.time[row];
+        let until = (t0 + 1.6 * (all_slips - t0)).min(end);
+        // With fewer profiles than this there is no transition to see.
+        if interface.between(t0, until).len() > 4 {
+            panels.push(map(&interface, &state, (t0, until), "(b) from stick to slip", "time since sliding began, s"));
+        }
+    }
+    if end > t0 {
+        let letter = ["(a)", "(b)", "(c)"][panels.len()];
+        panels.push(map(&interface, &state, (0.0, end), &format!("{letter} whole history"), "time t, s"));
+    }
+    Ok(Sheet { panels, columns: 1, size: (900, 440) })
+}
+
+struct State<'a> {
+    run: &'a Run,
+    pressure: Field,
+    slip_rate: Field,
+}
+
+impl State<'_> {
+    /// 0 no contact, 1 sticks, 2 slips: as `stick_fraction` counts them.
+    fn class(&self, frame: usize, node: usize) -> f64 {
+        let (pressure, rate) = (self.pressure.row(frame)[node], self.slip_rate.row(frame)[node]);
+        match &self.run.scene.friction {
+            _ if pressure <= 0.0 => 0.0,
+            Some(Friction::CoulombTanh { regularisation, .. }) if rate.abs() < *regularisation => 1.0,
+            _ => 2.0,
+        }
+    }
+}
+
+fn map(interface: &Interface, state: &State<'_>, (from, to): (f64, f64), title: &str, label: &str) -> Panel {
+    // The nodes in the order of their places; the fields of a map are as wide as the cells of a uniform face.
+    let mut nodes: Vec<usize> = (0..interface.x.len()).collect();
+    let place = |node: &usize| interface.place(interface.x[*node]);
+    nodes.sort_by(|a, b| place(a).total_cmp(&place(b)));
+    let (low, high) = (place(&nodes[0]), place(&nodes[nodes.len() - 1]));
+    let places: Vec<f64> = nodes.iter().map(place).collect();
+    let rows = nodes.len().clamp(2, 512);
+    let half = 0.5 * (high - low) / (nodes.len() - 1).max(1) as f64;
+    let ends = (low - half, high + half);
+    let picked: Vec<usize> = (0..rows)
+        .map(|i| nodes[nearest(&places, ends.0 + (ends.1 - ends.0) * (i as f64 + 0.5) / rows as f64)])
+        .collect();
+    let frames: Vec<usize> = (0..COLUMNS)
+        .map(|j| {
+            // A step's profile stands for the time since the one before.
+            let time = from + (to - from) * (j as f64 + 0.5) / COLUMNS as f64;
+            interface.time.partition_point(|t| *t < time).min(interface.time.len() - 1)
+        })
+        .collect();
+    let values = picked.iter().flat_map(|&node| frames.iter().map(move |&frame| state.class(frame, node))).collect();
+    let origin = if label.contains("since") { from } else { 0.0 };
+    let time = (from - origin, to - origin);
+    Panel::Map(Map {
+        title: title.into(),
+        x: Axis::linear(label).over(time.0, time.1),
+        y: Axis::linear("x, m"),
+        raster: Raster { x: time, y: ends, columns: COLUMNS, values },
+        colouring: Colouring::Classes(vec![
+            ("no contact".into(), (226, 226, 226)),
+            ("stick".into(), (0, 114, 178)),
+            ("slip".into(), (230, 159, 0)),
+        ]),
+        curves: Vec::new(),
+        equal: false,
+    })
+}

@@ -1,0 +1,137 @@
+//! The `[indenter]` table.
+
+use crate::error::Result;
+use crate::scene::keys::{Quantity, Section};
+use crate::scene::{Extend, Indenter, Rms};
+
+#[derive(Clone, Copy)]
+enum Profile {
+    Harmonic,
+    Parabola,
+    Circle,
+    Wedge,
+    Expression,
+    Sampled,
+    Rough,
+}
+
+const PROFILES: [(&str, Profile); 7] = [
+    ("harmonic", Profile::Harmonic),
+    ("parabola", Profile::Parabola),
+    ("circle", Profile::Circle),
+    ("wedge", Profile::Wedge),
+    ("expression", Profile::Expression),
+    ("sampled", Profile::Sampled),
+    ("rough", Profile::Rough),
+];
+
+const LENGTH: Quantity = Quantity::positive("a positive length in m");
+const POSITION: Quantity = Quantity::any("a position in m");
+const SLOPE: Quantity = Quantity::positive("a positive slope");
+
+/// Reads the indenter.
+pub(super) fn read(section: &Section) -> Result<Indenter> {
+    // The profile decides which keys there are; where it is absent, perhaps it is misspelt.
+    if !section.has("profile") {
+        section.only(&[
+            "profile",
+            "amplitude",
+            "wavelength",
+            "radius",
+            "centre",
+            "slope",
+            "formula",
+            "file",
+            "extend",
+            "period",
+            "hurst",
+            "rms_slope",
+            "rms_height",
+            "shortest",
+            "longest",
+            "seed",
+        ])?;
+    }
+    match section.choice("profile", &PROFILES, &[])? {
+        Profile::Harmonic => {
+            section.only(&["profile", "amplitude", "wavelength"])?;
+            let amplitude = section.number("amplitude", LENGTH)?;
+            Ok(Indenter::Harmonic { amplitude, wavelength: section.number("wavelength", LENGTH)? })
+        }
+        Profile::Parabola => {
+            section.only(&["profile", "radius", "centre"])?;
+            let radius = section.number("radius", LENGTH)?;
+            Ok(Indenter::Parabola { radius, centre: section.number("centre", POSITION)? })
+        }
+        Profile::Circle => {
+            section.only(&["profile", "radius", "centre"])?;
+            let radius = section.number("radius", LENGTH)?;
+            Ok(Indenter::Circle { radius, centre: section.number("centre", POSITION)? })
+        }
+        Profile::Wedge => {
+            section.only(&["profile", "slope", "centre"])?;
+            let slope = section.number("slope", SLOPE)?;
+            Ok(Indenter::Wedge { slope, centre: section.number("centre", POSITION)? })
+        }
+        Profile::Expression => {
+            section.only(&["profile", "formula"])?;
+            const FORMULA: &str = "a formula of x on one line, such as \"5e-4*(1-cos(2*pi*x))\"";
+            Ok(Indenter::Expression { formula: text(section, "formula", FORMULA)? })
+        }
+        Profile::Sampled => sampled(section),
+        Profile::Rough => rough(section),
+    }
+}
+
+fn sampled(section: &Section) -> Result<Indenter> {
+    const FILE: &str = "the name of a file of two columns, x and elevation in m";
+    const EXTENDS: [(&str, Extend); 2] = [("periodic", Extend::Periodic), ("error", Extend::Error)];
+
+    section.only(&["profile", "file", "extend", "period"])?;
+    let file = text(section, "file", FILE)?;
+    let extend = section.choice("extend", &EXTENDS, &[])?;
+    let period = section.optional_number("period", LENGTH)?;
+    if period.is_some() && extend == Extend::Error {
+        return Err(section.error("period", "needs extend = \"periodic\"; remove it, or change that"));
+    }
+    Ok(Indenter::Sampled { file, extend, period })
+}
+
+fn rough(section: &Section) -> Result<Indenter> {
+    const HURST: Quantity =
+        Quantity { what: "a Hurst exponent above 0 and at most 1", accepts: |hurst| hurst > 0.0 && hurst <= 1.0 };
+    const SEED: &str = "a whole number, at least 0";
+
+    section.only(&["profile", "hurst", "rms_slope", "rms_height", "shortest", "longest", "period", "seed"])?;
+    let hurst = section.number("hurst", HURST)?;
+    let slope = section.optional_number("rms_slope", SLOPE)?;
+    let height = section.optional_number("rms_height", LENGTH)?;
+    let rms = match (slope, height) {
+        (Some(_), Some(_)) => return Err(section.error("rms_height", "give rms_slope or rms_height, not both")),
+        (Some(slope), None) => Rms::RmsSlope(slope),
+        (None, Some(height)) => Rms::RmsHeight(height),
+        (None, None) => return Err(section.missing("rms_slope", "it, or rms_height in m")),
+    };
+    let shortest = section.number("shortest", LENGTH)?;
+    let longest = section.number("longest", LENGTH)?;
+    if longest < shortest {
+        let reason = format!("must be at least the shortest wavelength ({shortest:?} m), got {longest:?}");
+        return Err(section.error("longest", reason));
+    }
+    let period = section.optional_number("period", LENGTH)?.unwrap_or(longest);
+    if period < longest {
+        let reason = format!("must be at least the longest wavelength ({longest:?} m), got {period:?}");
+        return Err(section.error("period", reason));
+    }
+    let seed = section.count("seed", SEED, 0..=usize::MAX)? as u64;
+    Ok(Indenter::Rough { hurst, rms, shortest, longest, period, seed })
+}
+
+/// A text that must be there and not be empty.
+fn text(section: &Section, key: &str, what: &str) -> Result<String> {
+    match section.optional_text(key, what)? {
+        Some(text) if text.trim().is_empty() => Err(section.error(key, format!("is empty; give {what}"))),
+        Some(text) => Ok(text),
+        None => Err(section.missing(key, what)),
+    }
+}

@@ -1,0 +1,295 @@
+//! The `[material]` table: what it says, and what that is in the scene's loading history.
+
+use std::ops::RangeInclusive;
+
+use super::super::{Arm, Material, Memory, PoissonRule, checks};
+use crate::error::{Error, Result};
+use crate::rheology::{Band, Fractional, Shift};
+use crate::scene::keys::{Quantity, Section};
+
+/// The keys of a material. What fills where is not among them.
+const KEYS: [&str; 16] = [
+    "shear_modulus",
+    "young_modulus",
+    "fractional",
+    "poisson_ratio",
+    "arms",
+    "poisson_rule",
+    "bulk_arms",
+    "memory",
+    "shift",
+    "reference_temperature",
+    "temperature",
+    "c1",
+    "c2",
+    "activation_energy",
+    "notes",
+    "file",
+];
+
+/// A material as it is given.
+struct Given {
+    poisson_ratio: f64,
+    series: Series,
+    poisson_rule: Option<PoissonRule>,
+    bulk_arms: Vec<Arm>,
+    memory: Memory,
+    /// The law, the temperature (K), and the factor of the times there.
+    shift: Option<(Shift, f64, f64)>,
+    notes: Vec<String>,
+}
+
+/// The instantaneous shear modulus and its arms, or what they are made from.
+enum Series {
+    Prony { modulus: f64, arms: Vec<Arm> },
+    Fractional { law: Fractional, arms: usize },
+}
+
+/// Reads the material of a scene whose loading history visits the times of `band`. `others` are keys that may stand
+/// beside those of a material: where it is, which is not read here.
+pub(in crate::scene) fn read(section: &Section, others: &[&str], band: Option<Band>) -> Result<Material> {
+    let material = given(section, others)?.resolve(section, band)?;
+    if let (Some(band), Some(rule)) = (band, material.poisson_rule)
+        && let Some((t, nu)) = material.poisson().leaves(band)
+    {
+        let key = if rule == PoissonRule::BulkArms { "bulk_arms" } else { "arms" };
+        let reason = format!(
+            "take the Poisson ratio to {nu:.6} at {t:.3e} s, which is not inside (-1, 0.5); let their weights sum to less"
+        );
+        return Err(section.error(key, reason));
+    }
+    Ok(material)
+}
+
+/// Whether a table is a material, in whatever history.
+pub(in crate::scene) fn check(section: &Section) -> Result<()> {
+    given(section, &[]).map(drop)
+}
+
+fn given(section: &Section, others: &[&str]) -> Result<Given> {
+    const RATIO: Quantity = Quantity {
+        what: "a ratio above -1 and below 0.5 (0.5 is incompressible; come near it with, say, 0.499)",
+        accepts: |ratio| ratio > -1.0 && ratio < 0.5,
+    };
+    const MEMORIES: [(&str, Memory); 2] =
+        [("exponential", Memory::Exponential), ("backward_euler", Memory::BackwardEuler)];
+
+    section.only(&[&KEYS, others].concat())?;
+    let poisson_ratio = section.number("poisson_ratio", RATIO)?;
+    let series = series(section, poisson_ratio)?;
+    let relaxes = !matches!(&series, Series::Prony { arms, .. } if arms.is_empty());
+    let (poisson_rule, bulk_arms) = bulk(section, relaxes)?;
+    Ok(Given {
+        poisson_ratio,
+        series,
+        poisson_rule,
+        bulk_arms,
+        memory: section.optional_choice("memory", &MEMORIES, &[])?.unwrap_or(Memory::Exponential),
+        shift: shift(section)?,
+        notes: notes(section)?,
+    })
+}
+
+fn series(section: &Section, poisson_ratio: f64) -> Result<Series> {
+    const MODULUS: Quantity = Quantity::positive("a positive modulus in Pa s^order");
+    const ORDER: Quantity = Quantity { what: "an order above 0 and below 1", accepts: |a| a > 0.0 && a < 1.0 };
+    const ARMS: RangeInclusive<usize> = 1..=50;
+
+    let Some(fractional) = section.optional_section("fractional")? else {
+        return Ok(Series::Prony { modulus: shear_modulus(section, poisson_ratio)?, arms: arms(section, "arms")? });
+    };
+    if let Some(other) = ["shear_modulus", "young_modulus", "arms"].into_iter().find(|key| section.has(key)) {
+        return Err(section.error(other, format!("follows from fractional; give {other} or fractional, not both")));
+    }
+    fractional.only(&["modulus", "order", "arms"])?;
+    let (modulus, order) = (fractional.number("modulus", MODULUS)?, fractional.number("order", ORDER)?);
+    let arms = fractional.count("arms", "a whole number of arms from 1 to 50", ARMS)?;
+    let law = Fractional::new(modulus, order).map_err(|error| section.error("fractional", error.to_string()))?;
+    Ok(Series::Fractional { law, arms })
+}
+
+/// The instantaneous shear modulus, given as itself or as Young's modulus.
+fn shear_modulus(section: &Section, poisson_ratio: f64) -> Result<f64> {
+    const MODULUS: Quantity = Quantity::positive("a positive modulus in Pa");
+
+    let shear = section.optional_number("shear_modulus", MODULUS)?;
+    let young = section.optional_number("young_modulus", MODULUS)?;
+    match (shear, young) {
+        (Some(_), Some(_)) => Err(section.error("young_modulus", "give shear_modulus or young_modulus, not both")),
+        (Some(shear), None) => Ok(shear),
+        (None, Some(young)) => Ok(checks::shear_from_young(young, poisson_ratio)),
+        (None, None) => Err(section.missing("shear_modulus", "it, or young_modulus, in Pa")),
+    }
+}
+
+fn arms(section: &Section, key: &str) -> Result<Vec<Arm>> {
+    const WEIGHT: Quantity = Quantity {
+        what: "a share of the instantaneous modulus, above 0 and at most 1",
+        accepts: |weight| weight > 0.0 && weight <= 1.0,
+    };
+    const TIME: Quantity = Quantity::positive("a positive relaxation time in s");
+
+    let arm = |section: &Section| {
+        section.only(&["weight", "time"])?;
+        Ok(Arm { weight: section.number("weight", WEIGHT)?, time: section.number("time", TIME)? })
+    };
+    let sections = section.sections(key, "an array of tables { weight = ..., time = ... }")?;
+    let arms: Vec<Arm> = sections.iter().map(arm).collect::<Result<_>>()?;
+    checks::weights(&arms).map_err(|reason| section.error(key, reason))?;
+    Ok(arms)
+}
+
+/// How the bulk modulus relaxes; `relaxes` says whether the shear modulus does.
+fn bulk(section: &Section, relaxes: bool) -> Result<(Option<PoissonRule>, Vec<Arm>)> {
+    const RULES: [(&str, PoissonRule); 3] = [
+        ("constant_ratio", PoissonRule::ConstantRatio),
+        ("constant_bulk_modulus", PoissonRule::ConstantBulkModulus),
+        ("bulk_arms", PoissonRule::BulkArms),
+    ];
+    let rule = section.optional_choice("poisson_rule", &RULES, &[])?;
+    if relaxes && rule.is_none() {
+        let reason = "missing, and required with arms: give \"constant_ratio\" (the bulk modulus relaxes with the \
+                      shear modulus), \"constant_bulk_modulus\" (it stays) or \"bulk_arms\" (it has arms of its own)";
+        return Err(section.error("poisson_rule", reason));
+    }
+    match (rule, section.has("bulk_arms")) {
+        (Some(PoissonRule::BulkArms), false) => {
+            Err(section.missing("bulk_arms", "the Prony arms of the bulk modulus, or another poisson_rule"))
+        }
+        (Some(PoissonRule::BulkArms), true) => match arms(section, "bulk_arms")? {
+            arms if arms.is_empty() => {
+                Err(section.error("bulk_arms", "is empty; give arms, or poisson_rule = \"constant_bulk_modulus\""))
+            }
+            arms => Ok((rule, arms)),
+        },
+        (_, true) => Err(section.error("bulk_arms", "needs poisson_rule = \"bulk_arms\"")),
+        (_, false) => Ok((rule, Vec::new())),
+    }
+}
+
+/// The law by which the times go with temperature, the temperature, and the factor of the times there.
+fn shift(section: &Section) -> Result<Option<(Shift, f64, f64)>> {
+    #[derive(Clone, Copy)]
+    enum Law {
+        Wlf,
+        Arrhenius,
+    }
+    const LAWS: [(&str, Law); 2] = [("wlf", Law::Wlf), ("arrhenius", Law::Arrhenius)];
+    // What lies below was meant in degrees Celsius.
+    const TEMPERATURE: Quantity = Quantity {
+        what: "a temperature in K, from 100 to 3000 (20 degrees Celsius are 293.15 K)",
+        accepts: |t| (100.0..=3000.0).contains(&t),
+    };
+    const C1: Quantity = Quantity::positive("a positive number");
+    const C2: Quantity = Quantity::positive("a positive difference of temperatures in K");
+    const ENERGY: Quantity = Quantity::positive("a positive energy in J/mol");
+    const OF_THE_LAWS: [&str; 5] = ["reference_temperature", "temperature", "c1", "c2", "activation_energy"];
+
+    let Some(law) = section.optional_choice("shift", &LAWS, &[])? else {
+        return match OF_THE_LAWS.iter().find(|key| section.has(key)) {
+            Some(key) => Err(section.error(key, "needs shift = \"wlf\" or shift = \"arrhenius\"")),
+            None => Ok(None),
+        };
+    };
+    let (name, foreign): (_, &[&str]) = match law {
+        Law::Wlf => ("wlf", &["activation_energy"]),
+        Law::Arrhenius => ("arrhenius", &["c1", "c2"]),
+    };
+    if let Some(key) = foreign.iter().find(|key| section.has(key)) {
+        return Err(section.error(key, format!("is not a key of shift = \"{name}\"")));
+    }
+    let reference = section.number("reference_temperature", TEMPERATURE)?;
+    let temperature = section.number("temperature", TEMPERATURE)?;
+    let shift = match law {
+        Law::Wlf => Shift::Wlf { reference, c1: section.number("c1", C1)?, c2: section.number("c2", C2)? },
+        Law::Arrhenius => {
+            Shift::Arrhenius { reference, activation_energy: section.number("activation_energy", ENERGY)? }
+        }
+    };
+    let factor = shift.factor(temperature).map_err(|error| section.error("temperature", error.to_string()))?;
+    Ok(Some((shift, temperature, factor)))
+}
+
+fn notes(section: &Section) -> Result<Vec<String>> {
+    let note = |(index, value): (usize, &toml::Value)| match value.as_str() {
+        Some(text) if !text.contains(char::is_control) => Ok(text.to_owned()),
+        _ => Err(section.must_be(&format!("notes.{index}"), "a text on one line", value)),
+    };
+    section.values("notes", "an array of texts")?.iter().enumerate().map(note).collect()
+}
+
+impl Given {
+    /// The material at its temperature, as moduli and arms.
+    fn resolve(mut self, section: &Section, band: Option<Band>) -> Result<Material> {
+        let factor = self.shift.map_or(1.0, |(_, _, factor)| factor);
+        let (shear_modulus, mut arms) = match self.series {
+            Series::Prony { modulus, ref mut arms } => (modulus, std::mem::take(arms)),
+            Series::Fractional { law, arms } => {
+                self.approximate(law, arms, factor, band).map_err(|error| match error {
+                    Error::Scene { .. } => error,
+                    other => section.error("fractional", other.to_string()),
+                })?
+            }
+        };
+        for (key, arms) in [("arms", &mut arms), ("bulk_arms", &mut self.bulk_arms)] {
+            for (index, arm) in arms.iter_mut().enumerate() {
+                arm.time *= factor;
+                if !(arm.time > 0.0 && arm.time.is_finite()) {
+                    let reason = format!("takes {key}.{index}.time to {} s; choose one nearer the reference", arm.time);
+                    return Err(section.error("temperature", reason));
+                }
+            }
+        }
+        if let Some((shift, temperature, factor)) = self.shift {
+            self.notes.push(shift_note(shift, temperature, factor));
+        }
+        Ok(Material {
+            region: None,
+            thickness: None,
+            shear_modulus,
+            poisson_ratio: self.poisson_ratio,
+            arms,
+            poisson_rule: self.poisson_rule,
+            bulk_arms: self.bulk_arms,
+            memory: self.memory,
+            notes: self.notes,
+        })
+    }
+
+    /// The power law over the band as G(0) and arms at the reference temperature, where the band is 1/factor times as
+    /// late.
+    fn approximate(
+        &mut self,
+        law: Fractional,
+        arms: usize,
+        factor: f64,
+        band: Option<Band>,
+    ) -> Result<(f64, Vec<Arm>)> {
+        let none = || Error::Domain("needs a loading history of finite times".into());
+        let band = band.ok_or_else(none)?;
+        let there = Band::new(band.from / factor, band.to / factor)?;
+        let series = law.approximate(there, arms)?;
+        self.notes.push(format!(
+            "power law E(t) = {} t^-{order} / Gamma(1 - {order}) Pa as a Prony series of {} arms from {:.3e} s to \
+             {:.3e} s: largest error {:.2e}",
+            law.modulus,
+            series.series.arms.len(),
+            there.from,
+            there.to,
+            series.max_error,
+            order = law.order,
+        ));
+        let arms = series.series.arms.iter().map(|arm| Arm { weight: arm.weight, time: arm.time }).collect();
+        Ok((checks::shear_from_young(series.instantaneous, self.poisson_ratio), arms))
+    }
+}
+
+fn shift_note(shift: Shift, temperature: f64, factor: f64) -> String {
+    let (reference, law) = match shift {
+        Shift::Wlf { reference, c1, c2 } => (reference, format!("WLF, c1 = {c1}, c2 = {c2} K")),
+        Shift::Arrhenius { reference, activation_energy } => {
+            (reference, format!("Arrhenius, {activation_energy} J/mol"))
+        }
+    };
+    format!("relaxation times at {temperature} K: {factor:.6e} times those at {reference} K ({law})")
+}

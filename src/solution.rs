@@ -1,0 +1,100 @@
+//! A scene solved in memory: its history and its contact face at the end of each phase. Nothing is written.
+
+use std::path::Path;
+
+use mpi::topology::SimpleCommunicator;
+
+use crate::composition::{self, Problem};
+use crate::error::Result;
+use crate::output::{HistoryRow, InterfaceFrame};
+use crate::scene::Scene;
+use crate::solve::{Counts, Driver, Observer, Report};
+
+/// What a scene came to; the same on all ranks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// Undeformed x of the nodes of the contact face, m.
+    pub x: Vec<f64>,
+    /// The unloaded state and each accepted step.
+    pub history: Vec<HistoryRow>,
+    /// The contact face at the end of each phase.
+    pub ends: Vec<InterfaceFrame>,
+    /// What it took.
+    pub counts: Counts,
+}
+
+/// Solves a scene on all ranks of `comm`.
+pub fn solve(comm: &SimpleCommunicator, scene: &Scene) -> Result<Solution> {
+    let Problem { mut strategy, mut tangent, mut u, phases, settings, mesh } =
+        composition::build(comm, scene, Path::new(""))?;
+    let mut collected = Collected { history: vec![HistoryRow::default()], ends: Vec::new() };
+    let mut driver = Driver::new(strategy.as_mut(), &mut collected, &phases);
+    driver.run(comm, settings, &mut tangent, &mut u)?;
+    let counts = driver.counts();
+    Ok(Solution { x: mesh.face.x, history: collected.history, ends: collected.ends, counts })
+}
+
+impl Solution {
+    /// The last row of the history.
+    pub fn last(&self) -> HistoryRow {
+        self.history.last().copied().unwrap_or_default()
+    }
+
+    /// The row of the history at the end of a phase.
+    pub fn end_of(&self, phase: usize) -> HistoryRow {
+        self.history.iter().skip(1).rev().find(|row| row.phase == phase).copied().unwrap_or_default()
+    }
+}
+
+/// The row of the history that says where a run is.
+pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
+    let mut contact = report.problem.contact()?;
+    let totals = contact.totals()?;
+    Ok(HistoryRow {
+        time: report.time,
+        phase: report.phase,
+        approach: contact.placement.approach,
+        sliding: contact.placement.sliding,
+        normal_force: totals.normal_force,
+        tangential_force: totals.tangential_force,
+        hysteretic_force: totals.hysteretic_force,
+        contact_fraction: totals.contact_fraction,
+        stick_fraction: totals.stick_fraction,
+        max_penetration: totals.max_penetration,
+        traction_oscillation: totals.traction_oscillation,
+        newton_iterations: report.newton,
+        ..HistoryRow::default()
+    })
+}
+
+/// The contact face as it is.
+pub fn frame(report: &mut Report<'_>) -> Result<InterfaceFrame> {
+    let mut contact = report.problem.contact()?;
+    let fields = contact.fields()?;
+    let component = |i: usize| contact.surface.displacement.iter().skip(i).step_by(2).copied().collect();
+    Ok(InterfaceFrame {
+        time: report.time,
+        pressure: fields.pressure,
+        shear: fields.shear,
+        gap: fields.gap,
+        slip_rate: fields.slip_rate,
+        displacement_x: component(0),
+        displacement_z: component(1),
+    })
+}
+
+/// The observer that keeps everything.
+struct Collected {
+    history: Vec<HistoryRow>,
+    ends: Vec<InterfaceFrame>,
+}
+
+impl Observer for Collected {
+    fn observe(&mut self, mut report: Report<'_>) -> Result<()> {
+        self.history.push(row(&mut report)?);
+        if report.phase_end {
+            self.ends.push(frame(&mut report)?);
+        }
+        Ok(())
+    }
+}

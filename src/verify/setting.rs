@@ -1,0 +1,237 @@
+//! The numbers of a case: one source for the scene that is solved and for the oracle it is compared with.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use crate::error::Result;
+use crate::oracle::transient::{self, Update};
+use crate::oracle::{Harmonic, Layer, Moduli, PoissonRule, Solid, steady};
+use crate::scene::{self, Scene, Source};
+
+/// A periodic layer, an indenter and its motion. Lengths in m, stresses in Pa.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Setting {
+    /// The layer's period.
+    pub width: f64,
+    /// The layer's depth.
+    pub depth: f64,
+    /// Cells along the face and through the depth.
+    pub cells: [usize; 2],
+    /// Height of the lowest cell over that of the top one.
+    pub grading: f64,
+    /// The material.
+    pub solid: Solid,
+    /// How the arms are carried over a step.
+    pub update: Update,
+    /// The indenter.
+    pub indenter: Indenter,
+    /// Pa/m
+    pub penalty: f64,
+    /// Coefficient and regularisation (m/s); none = frictionless.
+    pub friction: Option<[f64; 2]>,
+    /// The phases, in order.
+    pub phases: Vec<Phase>,
+}
+
+/// The profile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Indenter {
+    /// Of the given amplitude; one wave in the layer's period.
+    Wave(f64),
+    /// A parabola of the given radius, its apex in the middle of the period.
+    Parabola(f64),
+}
+
+/// One phase.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Phase {
+    /// s
+    pub duration: f64,
+    /// Equal steps.
+    pub steps: usize,
+    /// Approach at its end, m.
+    pub approach: f64,
+    /// Of the indenter along +x, m/s.
+    pub velocity: f64,
+}
+
+impl Phase {
+    /// To an approach, without sliding.
+    pub fn press(duration: f64, steps: usize, approach: f64) -> Self {
+        Self { duration, steps, approach, velocity: 0.0 }
+    }
+
+    /// Over a distance at a held approach.
+    pub fn slide(velocity: f64, distance: f64, steps: usize, approach: f64) -> Self {
+        Self { duration: distance / velocity.abs(), steps, approach, velocity }
+    }
+}
+
+/// An elastic solid.
+pub fn elastic(shear: f64, poisson: f64) -> Solid {
+    Solid { shear, poisson, rule: PoissonRule::ConstantRatio, arms: Vec::new() }
+}
+
+/// The paper's Table 1, one arm.
+pub fn one_arm(poisson: f64, rule: PoissonRule) -> Solid {
+    Solid { shear: 568.498, poisson, rule, arms: vec![(0.579, 0.817)] }
+}
+
+impl Setting {
+    /// The paper's layer and wave (1 m, 1 m, 5e-4 m) on n x n cells; rigid but for a penalty of 1e8 Pa/m, frictionless.
+    pub fn new(n: usize, solid: Solid, phases: Vec<Phase>) -> Self {
+        Self {
+            width: 1.0,
+            depth: 1.0,
+            cells: [n, n],
+            grading: 1.0,
+            solid,
+            update: Update::Exponential,
+            indenter: Indenter::Wave(5e-4),
+            penalty: 1e8,
+            friction: None,
+            phases,
+        }
+    }
+
+    /// The same on half the cells along x and z.
+    pub fn halved(&self) -> Self {
+        let [nx, nz] = self.cells;
+        // The same lowest over top height, so that every other row of nodes is where it was, nearly.
+        Self { cells: [nx / 2, nz / 2], ..self.clone() }
+    }
+
+    /// Node spacing of the face, m.
+    pub fn spacing(&self) -> f64 {
+        self.width / self.cells[0] as f64
+    }
+
+    /// The scene, read from TOML as a user would write it.
+    pub fn scene(&self) -> Result<Scene> {
+        scene::read(&self.toml(), &Source { file: PathBuf::from("verify"), overrides: Vec::new() })
+    }
+
+    fn toml(&self) -> String {
+        let (solid, [nx, nz]) = (&self.solid, self.cells);
+        let rule = match solid.rule {
+            PoissonRule::ConstantRatio => "constant_ratio",
+            PoissonRule::ConstantBulkModulus => "constant_bulk_modulus",
+        };
+        let memory = match self.update {
+            Update::Exponential => "exponential",
+            Update::BackwardEuler => "backward_euler",
+        };
+        let arms: Vec<String> =
+            solid.arms.iter().map(|(weight, time)| format!("{{ weight = {weight:?}, time = {time:?} }}")).collect();
+        let indenter = match self.indenter {
+            Indenter::Wave(amplitude) => {
+                format!("profile = \"harmonic\"\namplitude = {amplitude:?}\nwavelength = {:?}", self.width)
+            }
+            Indenter::Parabola(radius) => {
+                format!("profile = \"parabola\"\nradius = {radius:?}\ncentre = {:?}", 0.5 * self.width)
+            }
+        };
+        let mut text = format!(
+            "[layer]\nwidth = {:?}\ndepth = {:?}\ncells = [{nx}, {nz}]\ngrading = {:?}\nsides = \"periodic\"\n\
+             [material]\nshear_modulus = {:?}\npoisson_ratio = {:?}\narms = [{}]\npoisson_rule = \"{rule}\"\n\
+             memory = \"{memory}\"\n[indenter]\n{indenter}\n[contact]\npenalty = {:?}\n[solver]\ntolerance = 1e-10\n",
+            self.width,
+            self.depth,
+            self.grading,
+            solid.shear,
+            solid.poisson,
+            arms.join(", "),
+            self.penalty
+        );
+        // Writing to a string cannot fail.
+        if let Some([coefficient, regularisation]) = self.friction {
+            let _ = writeln!(text, "[friction]\nlaw = \"coulomb_tanh\"\ncoefficient = {coefficient:?}");
+            let _ = writeln!(text, "regularisation = {regularisation:?}");
+        }
+        for Phase { duration, steps, approach, velocity } in &self.phases {
+            let _ = writeln!(text, "[[phase]]\nduration = {duration:?}\nsteps = {steps}\napproach = {approach:?}");
+            let _ = writeln!(text, "velocity = {velocity:?}");
+        }
+        text
+    }
+
+    /// The oracle's layer.
+    pub fn layer(&self) -> Layer {
+        Layer { depth: self.depth }
+    }
+
+    /// The oracle's instantaneous moduli.
+    pub fn moduli(&self) -> Moduli {
+        Moduli::elastic(self.solid.shear, self.solid.poisson)
+    }
+
+    /// The oracle's wave; of no height for another indenter.
+    pub fn wave(&self) -> Harmonic {
+        let amplitude = if let Indenter::Wave(amplitude) = self.indenter { amplitude } else { 0.0 };
+        Harmonic { amplitude, wavelength: self.width }
+    }
+
+    /// The oracle's steady sliding with the same penalty.
+    pub fn steady(&self, velocity: f64) -> steady::Sliding {
+        steady::Sliding {
+            layer: self.layer(),
+            solid: self.solid.clone(),
+            width: self.width,
+            velocity,
+            friction: self.friction.map_or(0.0, |[coefficient, _]| coefficient),
+            softness: 1.0 / self.penalty,
+        }
+    }
+
+    /// The oracle's forces at the end of each phase, by the same steps on `nodes` nodes; for waves at constant velocity.
+    pub fn transient(&self, nodes: usize) -> Result<Vec<Vec<transient::Forces>>> {
+        let [friction, regularisation] = self.friction.unwrap_or([0.0, 1.0]);
+        let setup = transient::Setup {
+            layer: self.layer(),
+            solid: self.solid.clone(),
+            width: self.width,
+            nodes,
+            penalty: self.penalty,
+            friction,
+            regularisation,
+            update: self.update,
+        };
+        let wave = self.wave();
+        let mut layer = transient::Transient::new(setup, |x| wave.at(x))?;
+        let (mut approach, mut sliding) = (0.0, 0.0);
+        let mut phases = Vec::with_capacity(self.phases.len());
+        for phase in &self.phases {
+            let dt = phase.duration / phase.steps as f64;
+            let velocity = phase.velocity;
+            let step = |i: usize| {
+                let part = i as f64 / phase.steps as f64;
+                let approach = approach + (phase.approach - approach) * part;
+                transient::Step { dt, approach, sliding: sliding + velocity * phase.duration * part, velocity }
+            };
+            phases.push(layer.run((1..=phase.steps).map(step))?);
+            (approach, sliding) = (phase.approach, sliding + velocity * phase.duration);
+        }
+        Ok(phases)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    /// The scene says the numbers of the setting, to the last bit.
+    #[test]
+    fn the_scene_is_the_setting() {
+        let solid = Solid { shear: 568.498, ..one_arm(1.0 / 3.0, PoissonRule::ConstantBulkModulus) };
+        let phases = vec![Phase::press(0.1, 3, 1e-3 / 7.0), Phase::slide(-0.3, 1.0, 5, 2e-3)];
+        let setting = Setting { friction: Some([0.2, 1e-7]), ..Setting::new(8, solid, phases) };
+        let scene = setting.scene().unwrap();
+        let material = &scene.materials[0];
+        assert_eq!((material.poisson_ratio, material.shear_modulus), (1.0 / 3.0, 568.498));
+        assert_eq!((scene.phases[0].approach, scene.phases[1].duration), (Some(1e-3 / 7.0), 1.0 / 0.3));
+        assert_eq!(scene.phases[1].motion, scene::Motion::Velocity(-0.3));
+        let parabola = Setting { indenter: Indenter::Parabola(1.5), ..setting };
+        assert_eq!(parabola.scene().unwrap().indenter, scene::Indenter::Parabola { radius: 1.5, centre: 0.5 });
+    }
+}

@@ -1,0 +1,107 @@
+//! Steady sliding over one relaxing arm: hysteretic friction in full contact, and the partial contact of VERIFY's table.
+
+use std::f64::consts::TAU;
+
+use super::setting::{Phase, Setting, one_arm};
+use super::{Case, Row, resolution};
+use crate::oracle::PoissonRule;
+use crate::oracle::steady::Load;
+use crate::solution::Solution;
+
+/// Tens of the relaxation time of 0.817 s.
+const SETTLED: f64 = 16.0;
+/// Twice the amplitude of the wave, m.
+const APPROACH: f64 = 1e-3;
+
+pub fn cases(quick: bool) -> Vec<Case> {
+    use PoissonRule::{ConstantBulkModulus, ConstantRatio};
+    let mut list = vec![full_contact(if quick { 64 } else { 128 }, ConstantRatio)];
+    if quick {
+        list.push(partial_contact(64, 0.1, ConstantRatio));
+        return list;
+    }
+    list.push(full_contact(32, ConstantBulkModulus));
+    for (n, velocity) in [(128, 1e-3), (128, 2.154e-2), (128, 0.1), (128, 1.0), (32, 10.0)] {
+        list.push(partial_contact(n, velocity, ConstantRatio));
+    }
+    list.push(partial_contact(32, 0.1, ConstantBulkModulus));
+    list
+}
+
+/// Pressed slowly, then slid for long, by one spacing of nodes a step: the nodes meet the profile at the same points
+/// at every step.
+fn slid(n: usize, velocity: f64, rule: PoissonRule, approach: f64) -> Setting {
+    // A quarter of a wave at least: the contact must have left where it was pressed.
+    let distance = (velocity * SETTLED).max(0.25);
+    let steps = (distance * n as f64).ceil();
+    let slide = Phase::slide(velocity, steps / n as f64, steps as usize, approach);
+    let phases = vec![Phase::press(10.0, 20, approach), slide];
+    Setting { friction: Some([0.2, 0.01 * velocity]), ..Setting::new(n, one_arm(0.3, rule), phases) }
+}
+
+/// Full contact is exact: |integral of p h'| = (1/2) wavelength k g0^2 |Im 1/(C_zz - i f C_xz)|, C at G*(k v). Mesh and
+/// steps are halved together, and both errors are of second order.
+fn full_contact(n: usize, rule: PoissonRule) -> Case {
+    let (velocity, approach) = (0.1, 8e-3);
+    let settings = vec![slid(n, velocity, rule, approach), slid(n / 2, velocity, rule, approach)];
+    let setting = settings[0].clone();
+    let compare = move |solutions: &[Solution]| {
+        let exact = setting.steady(velocity).full_contact(setting.wave(), Load::Approach(approach))?;
+        let [fine, coarse] = [0, 1].map(|i: usize| solutions[i].last());
+        let hysteretic = [fine.hysteretic_force, coarse.hysteretic_force];
+        Ok(vec![
+            Row::new("contact fraction", [fine.contact_fraction, 1.0], 0.0, "full contact is what the formula is for"),
+            Row::relative("N_z, N/m", [fine.normal_force, exact.normal], 1e-6, "settling: 16 s; solver"),
+            Row::relative("Q_x, N/m", [fine.tangential_force, exact.tangential], 1e-6, "settling: 16 s; solver"),
+            Row::refined("hysteretic force, N/m", hysteretic, exact.hysteretic),
+            Row::order("  its order of convergence", hysteretic, exact.hysteretic),
+        ])
+    };
+    Case {
+        name: format!("hysteresis in full contact, v = {velocity} m/s, {}", said(rule)),
+        source: "full contact of a wave, in closed form",
+        settings,
+        compare: Box::new(compare),
+    }
+}
+
+/// Partial contact against the complementarity problem in Fourier space on 512 nodes.
+fn partial_contact(n: usize, velocity: f64, rule: PoissonRule) -> Case {
+    let setting = slid(n, velocity, rule, APPROACH);
+    let settings = vec![setting.clone()];
+    let compare = move |solutions: &[Solution]| {
+        let wave = setting.wave();
+        let exact = setting.steady(velocity).solve(512, |x| wave.at(x), Load::Approach(APPROACH))?;
+        let row = solutions[0].last();
+        let h = setting.spacing();
+        let resolution = resolution(h, exact.contact_width);
+        let ratio = |hysteretic: f64, normal: f64| 1e4 * hysteretic / normal;
+        // Of the steepest slope in contact, all of which but little cancels between the two sides.
+        let steepest = 1e4 * TAU * wave.amplitude * (0.5 * TAU * exact.contact_width).sin();
+        let ratios = [ratio(row.hysteretic_force, row.normal_force), ratio(exact.hysteretic, exact.normal)];
+        Ok(vec![
+            Row::resolved("N_z, N/m", [row.normal_force, exact.normal], resolution),
+            Row::resolved("Q_x, N/m", [row.tangential_force, exact.tangential], resolution),
+            Row::new("contact fraction", [row.contact_fraction, exact.contact_width], 2.0 * h, "one node at each edge"),
+            Row::new(
+                "hysteretic force/N_z, 1e-4",
+                ratios,
+                resolution * steepest,
+                "mesh, of the steepest slope in contact",
+            ),
+        ])
+    };
+    Case {
+        name: format!("steady sliding, v = {velocity} m/s, {}, {n} x {n}", said(rule)),
+        source: "complementarity in Fourier space, 512 nodes",
+        settings,
+        compare: Box::new(compare),
+    }
+}
+
+fn said(rule: PoissonRule) -> &'static str {
+    match rule {
+        PoissonRule::ConstantRatio => "constant ratio",
+        PoissonRule::ConstantBulkModulus => "constant bulk modulus",
+    }
+}

@@ -1,0 +1,265 @@
+//! Runs that are killed, stopped or short of disk go on from their last checkpoint, and end with the same numbers as a
+//! run that nothing befell.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
+
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use common::program::{assert_same, ends_with, output_of, program};
+use mpjr::output::{checkpoint, reader::Results};
+
+/// Two phases, of which `slide` has `steps`; `material` and `solver` are the rest of their tables.
+fn scene(directory: &Path, steps: usize, material: &str, solver: &str) -> PathBuf {
+    let text = format!(
+        r#"
+        title = "restart"
+        [layer]
+        width = 1.0
+        depth = 0.5
+        cells = [24, 8]
+        sides = "periodic"
+        [material]
+        shear_modulus = 500.0
+        poisson_ratio = 0.3
+        {material}
+        [indenter]
+        profile = "harmonic"
+        amplitude = 5e-4
+        wavelength = 1.0
+        [contact]
+        penalty = 1e6
+        [friction]
+        law = "coulomb_tanh"
+        coefficient = 0.2
+        regularisation = 1e-3
+        [[phase]]
+        name = "indent"
+        duration = 2.0
+        steps = 20
+        approach = 1e-3
+        [[phase]]
+        name = "slide"
+        velocity = 0.1
+        duration = 3.0
+        steps = {steps}
+        [solver]
+        {solver}
+        [output]
+        interface_every = 2
+        bulk_at = ["indent", 2.31, "slide"]
+        checkpoint_every = 3
+        "#
+    );
+    let file = directory.join("scene.toml");
+    std::fs::write(&file, text).unwrap();
+    file
+}
+
+const ARMS: &str = "arms = [{ weight = 0.4, time = 0.8 }, { weight = 0.3, time = 5.0 }]\n";
+
+fn ratio() -> String {
+    format!("{ARMS} poisson_rule = \"constant_ratio\"")
+}
+
+fn bulk() -> String {
+    format!("{ARMS} poisson_rule = \"constant_bulk_modulus\"")
+}
+
+fn run(command: &mut Command, scene: &Path, out: &Path) -> Command {
+    let mut run = Command::new(command.get_program());
+    run.args(command.get_args());
+    run.envs(command.get_envs().filter_map(|(key, value)| Some((key, value?))));
+    run.arg("run").arg(scene).arg("--out").arg(out);
+    run
+}
+
+/// Waits until the checkpoint has been written `count` times more, or the program has ended.
+fn wait_for(child: &mut Child, results: &Path, count: usize) {
+    let written = || std::fs::metadata(checkpoint::beside(results)).and_then(|about| about.modified()).ok();
+    let (mut last, mut seen) = (written(), 0);
+    let begun = Instant::now();
+    while seen < count && child.try_wait().unwrap().is_none() {
+        let now = written();
+        seen += usize::from(now != last && now.is_some());
+        last = now;
+        assert!(begun.elapsed() < Duration::from_secs(120), "no checkpoint comes");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// Twenty kills at moments that no pattern of the program's can follow.
+#[test]
+fn nothing_is_lost_by_twenty_kills() {
+    for (material, solver) in [(ratio(), "strategy = \"monolithic\""), (ratio(), ""), (bulk(), "")] {
+        let directory = tempfile::tempdir().unwrap();
+        let scene = scene(directory.path(), 600, &material, solver);
+        let (whole, killed) = (directory.path().join("whole.h5"), directory.path().join("killed.h5"));
+        output_of(&mut run(&mut program(1), &scene, &whole));
+        let mut rows_before = 0;
+        for kill in 0..20_u64 {
+            let mut command = run(&mut program(1), &scene, &killed);
+            if checkpoint::read(&killed).unwrap().is_some() {
+                command.arg("--resume");
+            }
+            let mut child = command.stdout(Stdio::null()).spawn().unwrap();
+            let random = kill.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407) >> 40;
+            wait_for(&mut child, &killed, (random % 5) as usize);
+            std::thread::sleep(Duration::from_micros(random % 20_011));
+            assert_eq!(child.try_wait().unwrap(), None, "kill {kill}: ended by itself");
+            child.kill().unwrap();
+            child.wait().unwrap();
+            if !killed.exists() {
+                continue;
+            }
+            let results = Results::open(&killed).unwrap();
+            assert_eq!(results.text("status").unwrap(), "stopped");
+            let Some(found) = checkpoint::read(&killed).unwrap() else { continue };
+            let rows = found.fields.iter().find(|(name, _)| name == "rows").unwrap().1[0] as usize;
+            assert!(results.history("time").unwrap().len() >= rows, "kill {kill}: rows are lost");
+            assert!(rows >= rows_before, "kill {kill}: the checkpoint went back");
+            rows_before = rows;
+        }
+        assert!(rows_before > 20);
+        output_of(run(&mut program(1), &scene, &killed).arg("--resume"));
+        assert_same(&whole, &killed, 0.0);
+        assert!(!checkpoint::beside(&killed).exists());
+        assert_eq!(Results::open(&killed).unwrap().text("status").unwrap(), "complete");
+        let left = |end: &str| std::fs::read_to_string(directory.path().join(end)).unwrap();
+        assert_eq!(left("whole.xdmf").replace("whole", "killed"), left("killed.xdmf"));
+    }
+}
+
+/// A signal to one of the processes stops all within a step, with exit code 5; the run ends with the same numbers on
+/// as many ranks and on another number. Condensed, the same bits; with all unknowns on two ranks MUMPS adds in an order
+/// of its own each time, so that not even two runs that nothing befell have the same last digits.
+#[test]
+fn a_signal_to_one_rank_stops_all() {
+    let directory = tempfile::tempdir().unwrap();
+    for (material, solver, within) in
+        [(ratio(), "", 0.0), (bulk(), "", 0.0), (bulk(), "tolerance = 1e-13\nstrategy = \"monolithic\"", 1e-10)]
+    {
+        let scene = scene(directory.path(), 40, &material, solver);
+        let (whole, stopped) = (directory.path().join("whole.h5"), directory.path().join("stopped.h5"));
+        output_of(run(&mut program(1), &scene, &whole).args(["--set", "output.bulk_at=[]"]));
+        for (signal, ranks) in [("TERM", 2), ("INT", 1)] {
+            let mut command = run(&mut program(2), &scene, &stopped);
+            command.args(["--set", "output.bulk_at=[]"]);
+            let mut child = command.stdout(Stdio::null()).spawn().unwrap();
+            wait_for(&mut child, &stopped, 4);
+            let rank = processes_of(&child).pop().unwrap();
+            assert!(Command::new("kill").args([&format!("-{signal}"), &rank]).status().unwrap().success());
+            assert_eq!(child.wait().unwrap().code(), Some(5));
+            let results = Results::open(&stopped).unwrap();
+            assert_eq!(results.text("status").unwrap(), "stopped");
+            assert!(results.history("time").unwrap().len() < 60);
+            drop(results);
+            output_of(run(&mut program(ranks), &scene, &stopped).args(["--resume", "--set", "output.bulk_at=[]"]));
+            assert_same(&whole, &stopped, within);
+        }
+    }
+}
+
+/// A face so large that steps are solved with factors of steps before: these are part of the state.
+#[test]
+fn factors_that_serve_for_later_steps_come_back() {
+    for material in [ratio(), bulk()] {
+        let directory = tempfile::tempdir().unwrap();
+        let scene = scene(directory.path(), 40, &material, "");
+        let (whole, killed) = (directory.path().join("whole.h5"), directory.path().join("killed.h5"));
+        let cells = ["--set", "layer.cells=[640, 3]"];
+        output_of(run(&mut program(1), &scene, &whole).args(cells));
+        let mut child = run(&mut program(1), &scene, &killed).args(cells).stdout(Stdio::null()).spawn().unwrap();
+        wait_for(&mut child, &killed, 8);
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert!(checkpoint::read(&killed).unwrap().unwrap().fields.iter().any(|(name, _)| name == "factor"));
+        output_of(run(&mut program(1), &scene, &killed).args(cells).arg("--resume"));
+        assert_same(&whole, &killed, 0.0);
+    }
+}
+
+/// The process numbers of the ranks that an mpirun started.
+fn processes_of(mpirun: &Child) -> Vec<String> {
+    let id = mpirun.id();
+    let children = std::fs::read_to_string(format!("/proc/{id}/task/{id}/children")).unwrap();
+    children.split_whitespace().map(str::to_owned).collect()
+}
+
+/// What cannot be resumed is refused with what differs; what is complete is left alone.
+#[test]
+fn what_cannot_be_resumed_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = scene(directory.path(), 2000, &ratio(), "");
+    let out = directory.path().join("run.h5");
+    let resume = |set: &[&str]| {
+        let mut command = run(&mut program(1), &scene, &out);
+        command.arg("--resume").args(set.iter().flat_map(|set| ["--set", set]));
+        command
+    };
+    let message = ends_with(&mut resume(&[]), 2);
+    assert_eq!(message, format!("mpjr: {}: there is nothing to resume; run without --resume\n", out.display()));
+
+    let mut child = run(&mut program(1), &scene, &out).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    wait_for(&mut child, &out, 2);
+    assert!(Command::new("kill").arg(child.id().to_string()).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(5));
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(message.starts_with("mpjr: stopped by a signal at t = ") && message.ends_with("--resume\n"), "{message}");
+
+    let message = ends_with(&mut resume(&["phase.slide.velocity=0.2", "material.arms.1.time=6"]), 2);
+    assert_eq!(
+        message,
+        format!(
+            "mpjr: {}: is of another scene and cannot be resumed: material.arms.1.time: 5.0 there, 6.0 here; \
+             phase.1.velocity: 0.1 there, 0.2 here\n",
+            out.display()
+        )
+    );
+    // The title and the checkpoints themselves change nothing.
+    output_of(&mut resume(&["title=other", "output.checkpoint_every=500"]));
+    assert!(output_of(&mut resume(&[])).ends_with("this run is complete; there is nothing to go on with\n"));
+    let message = ends_with(&mut resume(&["layer.depth=0.25"]), 2);
+    assert!(message.contains("layer.depth: 0.5 there, 0.25 here"), "{message}");
+
+    // A damaged checkpoint, and one whose results are gone.
+    let mut child = run(&mut program(1), &scene, &out).stdout(Stdio::null()).spawn().unwrap();
+    wait_for(&mut child, &out, 2);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let kept = std::fs::read(checkpoint::beside(&out)).unwrap();
+    std::fs::write(checkpoint::beside(&out), &kept[..kept.len() / 2]).unwrap();
+    let message = ends_with(&mut resume(&[]), 4);
+    assert!(message.contains("is not a whole checkpoint") && message.lines().count() == 1, "{message}");
+    std::fs::remove_file(checkpoint::beside(&out)).unwrap();
+    assert!(ends_with(&mut resume(&[]), 2).contains("before its first checkpoint"));
+}
+
+/// On a full disk the program ends with exit code 4, and what is there afterwards can be gone on with elsewhere.
+#[test]
+fn a_full_disk_leaves_the_last_good_state() {
+    let Some(mut inside) = common::mpi::mounting() else {
+        eprintln!("skipped: no disk can be mounted here");
+        return;
+    };
+    let directory = tempfile::tempdir().unwrap();
+    let scene = scene(directory.path(), 1000, &ratio(), "strategy = \"monolithic\"");
+    let disk = directory.path().join("disk");
+    std::fs::create_dir(&disk).unwrap();
+    let (whole, short) = (directory.path().join("whole.h5"), directory.path().join("short.h5"));
+    output_of(&mut run(&mut program(1), &scene, &whole));
+    // The interface profiles alone are larger.
+    let size = std::fs::metadata(&whole).unwrap().len() / 2;
+    let script = "mount -t tmpfs -o size=$1 tmpfs \"$0\" && { \"$2\" run \"$3\" --out \"$0/short.h5\"; code=$?; } && \
+                  cp \"$0\"/short.* .. && exit $code";
+    inside.args(["sh", "-c", script]).arg(&disk).arg(size.to_string()).arg(env!("CARGO_BIN_EXE_mpjr")).arg(&scene);
+    inside.current_dir(&disk).env("OMPI_MCA_ess_singleton_isolated", "1").env("OMPI_MCA_btl", "self");
+    let message = ends_with(&mut inside, 4);
+    assert!(message.contains("No space left"), "{message}");
+    assert_eq!(Results::open(&short).unwrap().text("status").unwrap(), "stopped");
+    output_of(run(&mut program(1), &scene, &short).arg("--resume"));
+    assert_same(&whole, &short, 0.0);
+}

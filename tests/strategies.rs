@@ -1,0 +1,110 @@
+//! The condensed strategy gives the history of the monolithic one (DESIGN.md, section 1: the same discrete solution) to
+//! 1e-8 relative: for every material rule, side condition, memory, quadrature and friction law.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::path::Path;
+use std::process::Command;
+
+use mpjr::output::reader::Results;
+
+/// A layer pressed beyond full contact of its middle, slid, and lifted again.
+const SCENE: &str = r#"
+[layer]
+width = 1.0
+depth = 0.7
+cells = [20, 12]
+grading = 2.0
+sides = "periodic"
+[material]
+shear_modulus = 568.498
+poisson_ratio = 0.3
+arms = [ { weight = 0.3, time = 0.2 }, { weight = 0.4, time = 2.0 } ]
+poisson_rule = "constant_ratio"
+[indenter]
+profile = "harmonic"
+amplitude = 5e-4
+wavelength = 1.0
+[contact]
+penalty = 1e6
+[friction]
+law = "coulomb_tanh"
+coefficient = 0.3
+regularisation = 1e-3
+[[phase]]
+name = "indent"
+duration = 1.0
+steps = 5
+approach = 1e-3
+[[phase]]
+name = "slide"
+velocity = 0.1
+distance = 0.5
+steps = 10
+[[phase]]
+name = "lift"
+duration = 1.0
+steps = 4
+approach = -1e-4
+[solver]
+tolerance = 1e-11
+[output]
+bulk_at = ["indent", 2.345]
+"#;
+
+/// Runs the scene with a strategy and gives its results.
+fn run(directory: &Path, strategy: &str, overrides: &[String]) -> Results {
+    let (scene, out) = (directory.join("scene.toml"), directory.join(format!("{strategy}.h5")));
+    std::fs::write(&scene, SCENE).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_mpjr"));
+    command.arg("run").arg(&scene).arg("--out").arg(&out);
+    command.args(["--set", &format!("solver.strategy={strategy}")]);
+    for change in overrides {
+        command.args(["--set", change]);
+    }
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{overrides:?}: {}", String::from_utf8_lossy(&output.stderr));
+    Results::open(&out).unwrap()
+}
+
+/// The largest difference over the largest value.
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let largest = a.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    a.iter().zip(b).fold(0.0_f64, |most, (x, y)| most.max((x - y).abs())) / largest
+}
+
+#[test]
+fn condensed_is_the_same_discrete_solution() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut cases = Vec::new();
+    for sides in ["periodic", "free", "roller", "fixed"] {
+        for rule in ["constant_ratio", "constant_bulk_modulus"] {
+            cases.push(vec![format!("layer.sides={sides}"), format!("material.poisson_rule={rule}")]);
+        }
+    }
+    for change in ["material.memory=backward_euler", "contact.quadrature=gauss", "material.arms=[]", "friction=none"] {
+        for rule in ["constant_ratio", "constant_bulk_modulus"] {
+            cases.push(vec![change.to_owned(), format!("material.poisson_rule={rule}"), "layer.sides=free".into()]);
+        }
+    }
+    for case in cases {
+        // A table cannot be taken out by --set; a coefficient of zero is the frictionless law.
+        let case: Vec<String> =
+            case.iter().map(|change| change.replace("friction=none", "friction.coefficient=0.0")).collect();
+        let (whole, face) = (run(directory.path(), "monolithic", &case), run(directory.path(), "condensed", &case));
+        for column in ["normal_force", "tangential_force", "hysteretic_force", "contact_fraction", "stick_fraction"] {
+            let (a, b) = (whole.history(column).unwrap(), face.history(column).unwrap());
+            if a.iter().any(|x| x.abs() > 1e-12) {
+                assert!(difference(&a, &b) < 1e-8, "{case:?} {column}: {:.1e}", difference(&a, &b));
+            }
+        }
+        for field in ["pressure", "displacement_x", "displacement_z"] {
+            let (a, b) = (whole.interface(field).unwrap(), face.interface(field).unwrap());
+            assert!(difference(&a.values, &b.values) < 1e-8, "{case:?} {field}");
+        }
+        for field in ["displacement", "stress"] {
+            let (a, b) = (whole.bulk(field).unwrap(), face.bulk(field).unwrap());
+            assert!(difference(&a.values, &b.values) < 1e-8, "{case:?} {field}");
+        }
+    }
+}
