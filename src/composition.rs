@@ -12,13 +12,13 @@ use crate::bulk::{Arms, Bulk};
 use crate::element::mpjr::Quadrature;
 use crate::error::Result;
 use crate::friction::Friction;
-use crate::interface::{Interface, Laws};
-use crate::loading::{self, Motion, Phase};
+use crate::interface::{Interface, Laws, Surface};
+use crate::loading::{self, Adaptive, Motion, Phase, Placement};
 use crate::mesh::Mesh;
 use crate::parallel::{agree, share_numbers};
 use crate::petsc::{Integrator, Linear, Matrix, Settings, Vector};
 use crate::profile::Profile;
-use crate::scene::{self, Scene, When};
+use crate::scene::{self, Scene, Stepping, When};
 use crate::solve::{
     Backing, Body, Compliance, Condensed, Following, Interior, LARGE_FACE, MAX_NEWTON, Monolithic, PeriodicColumn,
     Relaxation, Remembering, Solid, Source, TransientProblem,
@@ -108,8 +108,9 @@ fn monolithic(
         tangent.declare_positive_definite()?;
     }
     let integrator = integrator(comm, linear, &mut tangent)?;
+    let phases = phases(scene, clearance(scene, &interface)?);
     let strategy = Box::new(Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?);
-    Ok(Problem { strategy, tangent, u, phases: phases(scene), integrator, mesh })
+    Ok(Problem { strategy, tangent, u, phases, integrator, mesh })
 }
 
 fn following(
@@ -159,8 +160,9 @@ fn condensed<B: Backing + 'static>(
     let linear = if 2 * held.len() > LARGE_FACE { Linear::OwnIterative } else { Linear::Own };
     let mut tangent = Matrix::shell(comm, u.local_len())?;
     let integrator = integrator(comm, linear, &mut tangent)?;
+    let phases = phases(scene, clearance(scene, &interface)?);
     let strategy = Box::new(Condensed::new(interface, backing, &u, &held, scene.solver.tolerance)?);
-    Ok(Problem { strategy, tangent, u, phases: phases(scene), integrator, mesh })
+    Ok(Problem { strategy, tangent, u, phases, integrator, mesh })
 }
 
 /// x, z of each face node, on rank 0.
@@ -208,9 +210,23 @@ fn quadrature(quadrature: scene::Quadrature) -> Quadrature {
     }
 }
 
+/// The gap to close before the indenter touches the face at rest, m; only for scenes with adaptive steps.
+fn clearance(scene: &Scene, interface: &Interface) -> Result<f64> {
+    if !scene.is_adaptive() {
+        return Ok(0.0);
+    }
+    let at_rest = Surface::at_rest(interface.face().x.len());
+    let gaps = interface.fields(Placement::default(), &at_rest)?.gap;
+    Ok(gaps.into_iter().fold(f64::INFINITY, f64::min))
+}
+
 /// The phases end to end, each from where the one before left the indenter; a step ends at every moment that bulk
-/// output asks for.
-pub fn phases(scene: &Scene) -> Vec<Phase> {
+/// output asks for. The indenter touches after an approach by `clearance`, m.
+pub fn phases(scene: &Scene, clearance: f64) -> Vec<Phase> {
+    let deepest = scene.phases.iter().filter_map(|phase| phase.approach).fold(0.0, f64::max) - clearance;
+    // What never touches, or just so, is given its way of getting there.
+    let scale = if deepest > 0.0 { deepest } else { clearance.abs().max(1e-200) };
+    let mut rates = [0.0, 0.0];
     let at = &scene.output.bulk_at;
     let moment = |when: &When| if let When::Time(t) = when { Some(*t) } else { None };
     let mut moments: Vec<f64> = at.iter().filter_map(moment).collect();
@@ -223,11 +239,15 @@ pub fn phases(scene: &Scene) -> Vec<Phase> {
             scene::Motion::Velocity(v) => Motion::Velocity(v),
             scene::Motion::Tangential { amplitude, cycles } => Motion::Sinusoid { amplitude, cycles },
         };
-        let mut steps = loading::targets(start, phase.duration, phase.steps, &moments);
+        let (count, tolerance) = match phase.stepping {
+            Stepping::Steps(steps) => (steps, None),
+            Stepping::Tolerance(tolerance) => (1, Some(tolerance)),
+        };
+        let mut steps = loading::targets(start, phase.duration, count, &moments);
         if let Some(last) = steps.last_mut() {
             last.bulk_output |= at.contains(&When::PhaseEnd(phase.name.clone()));
         }
-        let phase = Phase {
+        let mut phase = Phase {
             name: phase.name.clone(),
             start,
             duration: phase.duration,
@@ -235,8 +255,12 @@ pub fn phases(scene: &Scene) -> Vec<Phase> {
             sliding,
             motion,
             steps,
+            adaptive: None,
         };
-        (start, approach, sliding) = (phase.end(), to, phase.final_sliding());
+        let after = phase.rates(phase.start);
+        let jump = (after[0] - rates[0]).abs() + (after[1] - rates[1]).abs();
+        phase.adaptive = tolerance.map(|tolerance| Adaptive::new(&phase, tolerance * scale, jump));
+        (start, approach, sliding, rates) = (phase.end(), to, phase.final_sliding(), phase.rates(phase.end()));
         list.push(phase);
     }
     list

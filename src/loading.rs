@@ -44,8 +44,27 @@ pub struct Phase {
     pub sliding: f64,
     /// How it slides.
     pub motion: Motion,
-    /// Where its steps end, and how long each is, s.
+    /// Where its steps end, and how long each is, s; of an adaptive phase, where some step ends.
     pub steps: Vec<Target>,
+    /// How its steps are chosen; none = those of `steps` are taken.
+    pub adaptive: Option<Adaptive>,
+}
+
+/// The fewest steps in an adaptive phase, for the sake of its history.
+const FEWEST: f64 = 12.0;
+
+/// The shortest step that is tried for the sake of a tolerance, over the time at the end of its phase.
+pub const SHORTEST: f64 = 1e-10;
+
+/// How the steps of a phase are chosen as it goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Adaptive {
+    /// The local error allowed in a step, as a displacement of the contact face, m.
+    pub allowed: f64,
+    /// The first step, s.
+    pub first: f64,
+    /// The longest step, s.
+    pub longest: f64,
 }
 
 /// The end of a planned step.
@@ -57,6 +76,22 @@ pub struct Target {
     pub dt: f64,
     /// Whether bulk fields are asked for here.
     pub bulk_output: bool,
+}
+
+impl Adaptive {
+    /// For a phase at whose beginning the indenter's velocity jumps by `jump`, m/s: the first step is as long as what the
+    /// jump displaces is allowed. Steps divide the phase into [`FEWEST`] at least, and half a cycle of a sinusoid into
+    /// as many.
+    pub fn new(phase: &Phase, allowed: f64, jump: f64) -> Self {
+        let halves = match phase.motion {
+            Motion::Velocity(_) => 1.0,
+            Motion::Sinusoid { cycles, .. } => (2.0 * cycles).max(1.0),
+        };
+        let longest = phase.duration / (FEWEST * halves);
+        // A step that is displaced by jump * dt has half of it as its error, and room to grow.
+        let first = (allowed / jump).min(longest).max(SHORTEST * phase.end());
+        Self { allowed, first, longest }
+    }
 }
 
 impl Phase {
@@ -89,6 +124,19 @@ impl Phase {
                 }
             }
         }
+    }
+
+    /// The velocities of approach and of sliding at the time `t`, m/s.
+    pub fn rates(&self, t: f64) -> [f64; 2] {
+        let [from, to] = self.approach;
+        let sliding = match self.motion {
+            Motion::Velocity(velocity) => velocity,
+            Motion::Sinusoid { amplitude, cycles } => {
+                let angular = 2.0 * PI * cycles / self.duration;
+                amplitude * angular * (angular * (t - self.start)).cos()
+            }
+        };
+        [(to - from) / self.duration, sliding]
     }
 
     /// The least and the greatest sliding of the phase, m.
@@ -151,8 +199,8 @@ mod tests {
     fn sliding_rate_is_the_difference_quotient() {
         let motion = Motion::Sinusoid { amplitude: 2e-4, cycles: 1.25 };
         let name = String::new();
-        let phase =
-            Phase { name, start: 2.0, duration: 3.0, approach: [0.0, 1.0], sliding: 0.4, motion, steps: vec![] };
+        let (start, duration, approach) = (2.0, 3.0, [0.0, 1.0]);
+        let phase = Phase { name, start, duration, approach, sliding: 0.4, motion, steps: vec![], adaptive: None };
         let (t, dt) = (3.1, 0.05);
         let (now, before) = (phase.placement(t, dt), phase.placement(t - dt, dt));
         assert!((now.sliding_rate - (now.sliding - before.sliding) / dt).abs() < 1e-14);

@@ -135,7 +135,7 @@ fn overrides_are_applied_in_order_by_name_and_by_index() {
     assert_eq!((layer(&scene).sides, layer(&scene).grading), (Sides::Roller, 3.0));
     assert_eq!(scene.solver.tolerance, 1e-6);
     assert_eq!((scene.phases[1].name.as_str(), scene.phases[1].motion), ("fast, 1.5 m/s", Motion::Velocity(1.5)));
-    assert_eq!(scene.phases[0].steps, 9);
+    assert_eq!(scene.phases[0].stepping, Stepping::Steps(9));
     assert_eq!(scene.output.bulk_at[1], When::Time(1.0));
 }
 
@@ -384,7 +384,7 @@ impl Random {
         Phase {
             name: format!("{} {index}", self.of(&["a", "b.c", "\"", "7"])),
             duration: self.positive(),
-            steps: 1 + self.below(1000) as usize,
+            stepping: self.of(&[Stepping::Steps(3), Stepping::Steps(1000), Stepping::Tolerance(1e-3)]),
             approach: self.of(&[None, Some(-1.0), Some(9e-5)]),
             motion: self.of(&[Motion::Velocity(0.0), velocity, tangential]),
         }

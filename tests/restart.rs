@@ -162,6 +162,26 @@ fn a_signal_to_one_rank_stops_all() {
     }
 }
 
+/// Adaptive steps: what chooses them is part of the state.
+#[test]
+fn adaptive_steps_go_on_as_they_were() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = scene(directory.path(), 40, &bulk(), "");
+    let text = std::fs::read_to_string(&scene).unwrap();
+    let adaptive = text.replace("steps = 20\n", "tolerance = 1e-3\n").replace("steps = 40\n", "tolerance = 3e-4\n");
+    std::fs::write(&scene, adaptive).unwrap();
+    let (whole, killed) = (directory.path().join("whole.h5"), directory.path().join("killed.h5"));
+    output_of(&mut run(&mut program(1), &scene, &whole));
+    for checkpoints in [2, 9] {
+        let mut child = run(&mut program(1), &scene, &killed).stdout(Stdio::null()).spawn().unwrap();
+        wait_for(&mut child, &killed, checkpoints);
+        child.kill().unwrap();
+        child.wait().unwrap();
+        output_of(run(&mut program(1), &scene, &killed).arg("--resume"));
+        assert_same(&whole, &killed, 0.0);
+    }
+}
+
 /// A face so large that steps are solved with factors of steps before: these are part of the state.
 #[test]
 fn factors_that_serve_for_later_steps_come_back() {

@@ -77,10 +77,10 @@ pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<
         scene: scene.to_toml(),
         started,
     };
-    let progress = progress(phases.iter().map(|phase| phase.steps.len()).sum());
+    let progress = progress(scene.steps());
     let every = scene.output.interface_every;
     let done = begun.as_ref().map_or(0, |begun| begun.planned_steps);
-    let mut recording = Recording::new((comm, recorder), (every, &phases), checkpoints, progress).after(done);
+    let mut recording = Recording::new((comm, recorder), (every, scene), checkpoints, progress).after(done);
     let setup = clock.elapsed();
     let mut driver = Driver::new(strategy.as_mut(), &mut recording, &phases);
     if let Some(begun) = &begun {
@@ -133,7 +133,8 @@ fn open(job: &Job<'_>, started: SystemTime, mesh: &Mesh, phases: &[Phase], begun
 }
 
 fn plan(scene: &Scene, mesh: &Mesh, phases: &[Phase]) -> Plan {
-    let steps: usize = phases.iter().map(|phase| phase.steps.len()).sum();
+    let frames = phases.iter().flat_map(|phase| &phase.steps).filter(|target| target.bulk_output).count();
+    let steps = scene.steps() + frames;
     let ends = phases.len();
     Plan {
         // A step that is cut adds rows.

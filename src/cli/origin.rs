@@ -63,11 +63,12 @@ impl Origin<'_> {
         if phases.get(position.phase).and_then(|phase| phase.steps.get(position.target)).is_none() {
             return Err(Error::Usage(format!("{}: its checkpoint is beyond the loading history", file.display())));
         }
-        let [steps, pieces, newton, planned_steps] = snapshot.numbers("counts")?.map(|count: f64| count as usize);
+        let counts = snapshot.numbers("counts")?.map(|count: f64| count as usize);
+        let [steps, pieces, rejected, newton, planned_steps] = counts;
         let [history, interface, bulk] = snapshot.numbers("rows")?.map(|count: f64| count as usize);
         Ok(Some(Begun {
             position,
-            counts: Counts { steps, pieces, newton, ..Counts::default() },
+            counts: Counts { steps, pieces, rejected, newton, ..Counts::default() },
             planned_steps,
             rows: Rows { history, interface, bulk },
             started,
@@ -94,8 +95,8 @@ fn stored(results: &Path) -> Result<(Snapshot, String)> {
 
 /// Adds what [`Begun`] holds besides the state of the problem.
 pub fn save_counts(snapshot: &mut Snapshot, counts: Counts, planned_steps: usize) {
-    let Counts { steps, pieces, newton, .. } = counts;
-    snapshot.put("counts", [steps, pieces, newton, planned_steps].map(|count| count as f64).to_vec());
+    let Counts { steps, pieces, rejected, newton, .. } = counts;
+    snapshot.put("counts", [steps, pieces, rejected, newton, planned_steps].map(|count| count as f64).to_vec());
 }
 
 /// Adds the rows of the result file that count.
@@ -105,14 +106,8 @@ pub fn save_rows(snapshot: &mut Snapshot, rows: Rows) {
 
 /// Where the phase after the first `count` begins.
 fn start_of(phases: &[Phase], count: usize) -> Result<Position> {
-    let before = count.checked_sub(1).and_then(|last| phases.get(last)?.steps.last());
-    let first = phases.get(count).and_then(|phase| phase.steps.first());
-    match (before, first) {
-        (Some(before), Some(first)) => {
-            Ok(Position { phase: count, target: 0, now: before.time, dt: first.dt, cuts: 0 })
-        }
-        _ => Err(Error::Internal(format!("no phase begins after {count} of {}", phases.len()))),
-    }
+    let no_such = || Error::Internal(format!("no phase begins after {count} of {}", phases.len()));
+    Position::start_of(phases, count).ok_or_else(no_such)
 }
 
 /// Whether the run whose results are at `out` is already complete; an error when it is not one that can go on. To be

@@ -8,12 +8,12 @@ use super::interrupt::Interrupt;
 use super::origin::{save_counts, save_rows};
 use super::progress::{Progress, Stage};
 use crate::error::{Error, Result};
-use crate::loading::Phase;
 use crate::output::bulk::Frame;
 use crate::output::checkpoint::{self, Checkpoint};
 use crate::output::{self, HistoryRow, Recorder, Status};
 use crate::parallel::{agree, any};
 use crate::petsc::Vector;
+use crate::scene::Scene;
 use crate::snapshot::Snapshot;
 use crate::solution;
 use crate::solve::{Counts, Observer, Report, TransientProblem};
@@ -24,7 +24,7 @@ pub struct Recording<'a> {
     recorder: Option<Recorder>,
     /// Planned steps between interface profiles; 0 = only at the ends of phases.
     interface_every: usize,
-    phases: &'a [Phase],
+    scene: &'a Scene,
     progress: Progress,
     checkpoints: Checkpoints<'a>,
     planned_steps: usize,
@@ -47,15 +47,15 @@ pub struct Checkpoints<'a> {
 
 impl<'a> Recording<'a> {
     /// Records into the recorder of the communicator's rank 0, an interface profile after so many planned steps of the
-    /// phases, and shows on `progress`.
+    /// scene, and shows on `progress`.
     pub fn new(
         (world, recorder): (&'a SimpleCommunicator, Option<Recorder>),
-        (interface_every, phases): (usize, &'a [Phase]),
+        (interface_every, scene): (usize, &'a Scene),
         checkpoints: Checkpoints<'a>,
         progress: Progress,
     ) -> Self {
         let last = HistoryRow::default();
-        Self { world, recorder, interface_every, phases, progress, checkpoints, planned_steps: 0, last }
+        Self { world, recorder, interface_every, scene, progress, checkpoints, planned_steps: 0, last }
     }
 
     /// The same after so many planned steps.
@@ -121,8 +121,8 @@ impl<'a> Recording<'a> {
             recorder.interface(solution::frame(report)?)?;
         }
         self.progress.show(&Stage {
-            done: self.planned_steps,
-            phase: &self.phases[report.phase].name,
+            done: self.scene.steps_until(report.phase, report.time),
+            phase: &self.scene.phases[report.phase].name,
             time: report.time,
             normal_force: self.last.normal_force,
             tangential_force: self.last.tangential_force,

@@ -68,8 +68,9 @@ pub fn plan(scene: &Scene, outline: &Outline) -> String {
     let _ = writeln!(text, "mesh:          {}, {} unknowns", extent(scene, outline), outline.unknowns);
     let _ = writeln!(
         text,
-        "loading:       {} phase(s), {} steps, {:.6} s",
+        "loading:       {} phase(s), {}{} steps, {:.6} s",
         scene.phases.len(),
+        if scene.is_adaptive() { "adaptive, about " } else { "" },
         scene.steps(),
         scene.duration()
     );
@@ -136,6 +137,10 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
         0 => String::new(),
         pieces => format!(", {pieces} of them pieces of steps that were cut"),
     };
+    let rejected = match counts.rejected {
+        0 => String::new(),
+        rejected => format!(" ({rejected} attempts rejected)"),
+    };
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{:<15}{} at t = {:.6} s", "status:", status.as_str(), last.time);
@@ -152,7 +157,8 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
         "{:<15}{:.4} of the face, {:.4} of it sticking; penetration {:.1e} m",
         "final contact:", last.contact_fraction, last.stick_fraction, last.max_penetration
     );
-    let _ = writeln!(text, "{:<15}{} steps, {} Newton iterations{pieces}", "work:", counts.steps, counts.newton);
+    let _ =
+        writeln!(text, "{:<15}{} steps{rejected}, {} Newton iterations{pieces}", "work:", counts.steps, counts.newton);
     let _ = writeln!(
         text,
         "{:<15}{} on {ranks} rank(s): set-up {}, assembly {},\n{:<15}linear solver {}, output {}",

@@ -116,7 +116,7 @@ fn reach(scene: &Scene, face: Stretch) -> [f64; 2] {
     if face.periodic {
         return [face.from, face.to];
     }
-    let ranges = phases(scene).iter().map(|phase| phase.sliding_range()).collect::<Vec<_>>();
+    let ranges = phases(scene, 0.0).iter().map(|phase| phase.sliding_range()).collect::<Vec<_>>();
     let least = ranges.iter().map(|range| range[0]).fold(0.0, f64::min);
     let greatest = ranges.iter().map(|range| range[1]).fold(0.0, f64::max);
     [face.from - greatest, face.to - least]

@@ -4,7 +4,7 @@
 //! have been forced to the disk: at every moment the last whole checkpoint and all rows before it are there.
 //!
 //! The format is this program's own, so that every write is seen to succeed: the HDF5 library, whose files are for
-//! other programs to read, does not survive a disk that fills up while it writes. A line `mpjr checkpoint 2`, the
+//! other programs to read, does not survive a disk that fills up while it writes. A line `mpjr checkpoint 3`, the
 //! length of a TOML header, the header (scene, `started`, names and lengths of the lists), the numbers as 8 bytes
 //! each, least significant byte first, and a checksum of all that.
 
@@ -19,7 +19,7 @@ use super::store::failed;
 use crate::error::{Error, Result};
 
 /// The number goes up when what a checkpoint holds changes its meaning.
-const MARK: &[u8] = b"mpjr checkpoint 2\n";
+const MARK: &[u8] = b"mpjr checkpoint 3\n";
 /// What the mark of every format begins with.
 const ANY_MARK: &[u8] = b"mpjr checkpoint ";
 

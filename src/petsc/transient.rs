@@ -29,7 +29,7 @@ pub struct Accepted {
     pub step: Step,
     /// Newton iterations it took, those of rejected attempts included.
     pub newton: usize,
-    /// How often it was cut before it was accepted.
+    /// How often it was rejected before it was accepted.
     pub cuts: usize,
 }
 
@@ -49,7 +49,7 @@ pub struct Attempt {
     pub now: f64,
     /// Its length, s.
     pub dt: f64,
-    /// How often it may be cut (by four each time) before the solve fails.
+    /// How often it may be rejected before the solve fails: cut by four where Newton's method fails.
     pub max_cuts: usize,
 }
 
@@ -63,6 +63,18 @@ pub enum Verdict {
     /// Give the step up: it is cut and tried again.
     Diverged,
 }
+
+/// What becomes of a step whose equations are solved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Judgement {
+    /// It is accepted.
+    Accept,
+    /// It is tried again with this fraction of its length, above 0 and below 1.
+    Retry(f64),
+}
+
+/// The fraction of its length with which a step is tried again when Newton's method fails.
+const CUT: f64 = 0.25;
 
 /// F(t, u, du/dt) = 0, as TS's implicit form wants it.
 ///
@@ -88,6 +100,10 @@ pub trait Implicit {
     }
     /// Judges the Newton iterate whose residual norm is `norm`.
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
+    /// Judges a step that converged to `u`, before it is accepted.
+    fn judge(&mut self, _step: Step, _u: &Vector) -> Result<Judgement> {
+        Ok(Judgement::Accept)
+    }
     /// Takes note of an accepted step that ends at `u`.
     fn accepted(&mut self, accepted: Accepted, u: &Vector) -> Result<Next>;
 }
@@ -213,7 +229,7 @@ impl Integrator {
         let mut context =
             Context { problem, ts: self.ts, step: Step { t: now + dt, dt }, newton: 0, cuts: 0, error: None };
         let pointer = (&raw mut context).cast::<c_void>();
-        let (ts, mut snes, mut reason) = (self.ts, null_mut(), 0);
+        let (ts, mut snes, mut adapt, mut reason) = (self.ts, null_mut(), null_mut(), 0);
         // SAFETY: `context` outlives TSSolve, the only call that runs the callbacks; PETSc gives each callback the
         // pointer it was set with, and runs one callback at a time.
         let code = unsafe {
@@ -221,6 +237,8 @@ impl Integrator {
             check(ffi::TSSetIJacobian(ts, jacobian.raw(), jacobian.raw(), Some(tangent::<P>), pointer))?;
             check(ffi::TSSetApplicationContext(ts, pointer))?;
             check(ffi::TSSetPostStep(ts, Some(post_step::<P>)))?;
+            check(ffi::TSGetAdapt(ts, &mut adapt))?;
+            check(ffi::TSAdaptSetCheckStage(adapt, Some(check_stage::<P>)))?;
             check(ffi::TSGetSNES(ts, &mut snes))?;
             check(ffi::SNESSetConvergenceTest(snes, Some(convergence::<P>), pointer, None))?;
             check(ffi::SNESSetComputeInitialGuess(snes, Some(guess::<P>), pointer))?;
@@ -372,7 +390,9 @@ unsafe extern "C" fn guess<P: Implicit>(_snes: ffi::SNES, u: ffi::Vec, pointer: 
     // SAFETY: as for `residual`; TS is in the middle of a step that begins at its time.
     unsafe {
         guarded::<P>(pointer, |context| {
-            let mut start = 0.0;
+            let (mut start, mut adapt) = (0.0, null_mut());
+            check(ffi::TSGetAdapt(context.ts, &mut adapt))?;
+            check(ffi::TSAdaptSetScaleSolveFailed(adapt, CUT))?;
             check(ffi::TSGetTime(context.ts, &mut start))?;
             let Step { dt, .. } = attempted(context.ts, start)?;
             context.problem.guess(Step { t: start + dt, dt }, &mut Vector::borrow(u))
@@ -401,6 +421,32 @@ unsafe extern "C" fn convergence<P: Implicit>(
                 Verdict::Iterate => ffi::SNESConvergedReason_SNES_CONVERGED_ITERATING,
                 Verdict::Converged => ffi::SNESConvergedReason_SNES_CONVERGED_FNORM_RELATIVE,
                 Verdict::Diverged => ffi::SNESConvergedReason_SNES_DIVERGED_FNORM_NAN,
+            };
+            Ok(())
+        })
+    }
+}
+
+/// Comes after every Newton solve that converged; what it refuses is tried again from the last accepted state.
+unsafe extern "C" fn check_stage<P: Implicit>(
+    adapt: ffi::TSAdapt,
+    ts: ffi::TS,
+    _t: f64,
+    u: ffi::Vec,
+    accept: *mut ffi::PetscBool,
+) -> ffi::PetscErrorCode {
+    let mut pointer: *mut c_void = null_mut();
+    // SAFETY: as for `post_step`; `accept` is a place for the answer.
+    unsafe {
+        ffi::TSGetApplicationContext(ts, (&raw mut pointer).cast::<c_void>());
+        guarded::<P>(pointer, |context| {
+            let judgement = context.problem.judge(context.step, &Vector::borrow(u))?;
+            *accept = match judgement {
+                Judgement::Accept => ffi::PetscBool_PETSC_TRUE,
+                Judgement::Retry(fraction) => {
+                    check(ffi::TSAdaptSetScaleSolveFailed(adapt, fraction))?;
+                    ffi::PetscBool_PETSC_FALSE
+                }
             };
             Ok(())
         })

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::{Arm, Extend, Indenter, Layer, Material, Phase, Scene, Sides, When, keys};
+use super::{Arm, Extend, Indenter, Layer, Material, Memory, Phase, Scene, Sides, Stepping, When, keys};
 use crate::error::{Error, Result};
 
 /// The key and what is wrong with it.
@@ -17,6 +17,7 @@ pub(super) fn all(scene: &Scene, file: &Path) -> Result<()> {
         .and_then(|()| layer(&|layer| strata(layer, &scene.materials)))
         .and_then(|()| layer(&|layer| period(layer, &scene.indenter)))
         .and_then(|()| times(&scene.phases))
+        .and_then(|()| adaptive(&scene.phases, &scene.materials))
         .and_then(|()| scene.phases.iter().try_for_each(|phase| approach(phase, scene)))
         .and_then(|()| moments(&scene.output.bulk_at, &scene.phases))
         .map_err(|(key, reason)| Error::scene(file, key, reason))
@@ -135,12 +136,13 @@ fn times(phases: &[Phase]) -> Check {
     let mut start = 0.0;
     let mut before = 0;
     for phase in phases {
-        let (end, step) = (start + phase.duration, phase.duration / phase.steps as f64);
+        let steps = phase.expected_steps();
+        let (end, step) = (start + phase.duration, phase.duration / steps as f64);
         let key = format!("phase.{}.duration", phase.name);
         if !(phase.duration > 0.0 && end.is_finite()) {
             return fail(&key, format!("must be a positive time in s that can be counted, got {:?}", phase.duration));
         }
-        if phase.steps > MOST - before {
+        if steps > MOST - before {
             let reason = format!("the history can have at most {MOST} steps in all");
             return fail(&format!("phase.{}.steps", phase.name), reason);
         }
@@ -151,9 +153,22 @@ fn times(phases: &[Phase]) -> Check {
             return fail(&key, reason);
         }
         start = end;
-        before += phase.steps;
+        before += steps;
     }
     Ok(())
+}
+
+/// Adaptive steps see what is not straight in the path of the face, for which the exponential memory is exact; the error
+/// of backward Euler's memory they would not see where the face is held and the stress relaxes.
+fn adaptive(phases: &[Phase], materials: &[Material]) -> Check {
+    let first_order = |material: &Material| !material.is_elastic() && material.memory == Memory::BackwardEuler;
+    match phases.iter().find(|phase| matches!(phase.stepping, Stepping::Tolerance(_))) {
+        Some(phase) if materials.iter().any(first_order) => {
+            let reason = "needs memory = \"exponential\" in the material; or give steps";
+            fail(&format!("phase.{}.tolerance", phase.name), reason)
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The indenter neither passes the clamped face nor, as a circle, sinks in to its centre.

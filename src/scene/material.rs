@@ -39,7 +39,7 @@ impl Scene {
 /// From the shortest step to the end of the history, s, and at least a decade; none where these are no times.
 pub(super) fn band(phases: &[Phase]) -> Option<Band> {
     let end: f64 = phases.iter().map(|phase| phase.duration).sum();
-    let step = phases.iter().map(|phase| phase.duration / phase.steps as f64).fold(f64::INFINITY, f64::min);
+    let step = phases.iter().map(|phase| phase.duration / phase.expected_steps() as f64).fold(f64::INFINITY, f64::min);
     Band::new(step.min(end / 10.0), end).ok()
 }
 

@@ -220,14 +220,26 @@ pub struct Phase {
     pub name: String,
     /// s, > 0; always resolved (from `distance` and `velocity` where the file says those).
     pub duration: f64,
-    /// Equal steps, >= 1.
-    pub steps: usize,
+    /// How it is divided into steps.
+    #[serde(flatten)]
+    pub stepping: Stepping,
     /// Normal approach of the indenter at the end of the phase, m, linear in time; none = unchanged.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub approach: Option<f64>,
     /// Tangential motion of the indenter.
     #[serde(flatten)]
     pub motion: Motion,
+}
+
+/// How a phase is divided into steps.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stepping {
+    /// So many equal steps, >= 1.
+    Steps(usize),
+    /// Steps chosen as the phase goes, so that the local error of each is at most this share of the greatest penetration
+    /// of the undeformed face that the history asks for; in (0, 1).
+    Tolerance(f64),
 }
 
 /// Tangential motion of the indenter over one phase, relative to where the phase found it.

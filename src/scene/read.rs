@@ -93,6 +93,9 @@ fn title(root: &Section, file: &Path) -> Result<String> {
 /// Whole numbers from 1.
 const COUNT: std::ops::RangeInclusive<usize> = 1..=usize::MAX;
 
+const TOLERANCE: Quantity =
+    Quantity { what: "a relative tolerance above 0 and below 1", accepts: |value| value > 0.0 && value < 1.0 };
+
 fn contact(section: &Section, body: &Body, materials: &[Material]) -> Result<Contact> {
     const QUADRATURES: [(&str, Quadrature); 2] = [("nodal", Quadrature::Nodal), ("gauss", Quadrature::Gauss)];
 
@@ -107,8 +110,6 @@ fn contact(section: &Section, body: &Body, materials: &[Material]) -> Result<Con
 /// The penalty, given as itself or as the compliance that it may add.
 fn penalty(section: &Section, body: &Body, materials: &[Material]) -> Result<f64> {
     const PENALTY: Quantity = Quantity::positive("a positive stiffness in Pa/m");
-    const TOLERANCE: Quantity =
-        Quantity { what: "a relative tolerance above 0 and below 1", accepts: |value| value > 0.0 && value < 1.0 };
 
     let penalty = section.optional_number("penalty", PENALTY)?;
     let tolerance = section.optional_number("tolerance", TOLERANCE)?;
@@ -149,8 +150,6 @@ fn friction(section: &Section) -> Result<Friction> {
 }
 
 fn solver(section: Option<&Section>) -> Result<Solver> {
-    const TOLERANCE: Quantity =
-        Quantity { what: "a relative tolerance above 0 and below 1", accepts: |value| value > 0.0 && value < 1.0 };
     const STRATEGIES: [(&str, Strategy); 3] =
         [("auto", Strategy::Auto), ("monolithic", Strategy::Monolithic), ("condensed", Strategy::Condensed)];
 

@@ -2,7 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
-use super::{Body, Layer, Material, Scene, Sides, When};
+use super::{Body, Layer, Material, Phase, Scene, Sides, Stepping, When};
 
 impl Scene {
     /// The resolved scene as TOML: every default written out, every duration and modulus in its own key. Reading it
@@ -18,9 +18,24 @@ impl Scene {
         self.phases.iter().map(|phase| phase.duration).sum()
     }
 
-    /// The steps of all phases.
+    /// The steps of all phases, those of adaptive ones as [`Phase::expected_steps`] has them.
     pub fn steps(&self) -> usize {
-        self.phases.iter().map(|phase| phase.steps).sum()
+        self.phases.iter().map(Phase::expected_steps).sum()
+    }
+
+    /// Whether some phase chooses its steps.
+    pub fn is_adaptive(&self) -> bool {
+        self.phases.iter().any(|phase| matches!(phase.stepping, Stepping::Tolerance(_)))
+    }
+
+    /// The steps up to the time `t`, s, in the phase of this index; of an adaptive phase its share in time.
+    pub fn steps_until(&self, index: usize, t: f64) -> usize {
+        let (before, rest) = self.phases.split_at(index.min(self.phases.len()));
+        let start: f64 = before.iter().map(|phase| phase.duration).sum();
+        let steps: usize = before.iter().map(Phase::expected_steps).sum();
+        let inside = rest.first().map_or(0.0, |phase| (t - start) / phase.duration * phase.expected_steps() as f64);
+        // Round-off in the clock does not hold back a step that is done.
+        steps + (inside + 1e-6) as usize
     }
 
     /// The layer, where the body is one.
@@ -40,7 +55,7 @@ impl Scene {
     pub fn first_phases(&self, count: usize) -> Self {
         let phases = self.phases[..count.min(self.phases.len())].to_vec();
         let end: f64 = phases.iter().map(|phase| phase.duration).sum();
-        let near = phases.last().map_or(0.0, |last| 1e-9 * last.duration / last.steps as f64);
+        let near = phases.last().map_or(0.0, |last| 1e-9 * last.duration / last.expected_steps() as f64);
         let mut part = Self { title: String::new(), phases, ..self.clone() };
         part.output.checkpoint_every = 0;
         part.output.bulk_at.retain(|moment| match moment {
@@ -57,6 +72,17 @@ impl Scene {
             if let When::Time(time) = moment {
                 *time = time.min(end);
             }
+        }
+    }
+}
+
+impl Phase {
+    /// How many steps it has; where they are chosen as it goes, about how many there will be.
+    pub fn expected_steps(&self) -> usize {
+        match self.stepping {
+            Stepping::Steps(steps) => steps,
+            // The steps of a method whose local error goes with their square.
+            Stepping::Tolerance(tolerance) => (3.0 / tolerance.sqrt()) as usize + 10,
         }
     }
 }

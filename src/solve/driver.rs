@@ -2,10 +2,11 @@
 
 use std::time::{Duration, Instant};
 
+use super::adapt::{self, Controller};
 use super::{Observer, Report, TransientProblem};
 use crate::error::{Error, Result};
-use crate::loading::Phase;
-use crate::petsc::{Accepted, Attempt, Implicit, Integrator, Matrix, Next, Step, Vector, Verdict};
+use crate::loading::{Adaptive, Phase, SHORTEST, Target};
+use crate::petsc::{Accepted, Attempt, Implicit, Integrator, Judgement, Matrix, Next, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 
 /// Newton iterations per attempt: from stick to slip under a sharp regularisation a step takes up to fifty.
@@ -31,6 +32,10 @@ pub struct Driver<'a> {
     dt: Option<f64>,
     /// Cuts of the planned step so far.
     cuts: usize,
+    /// Of an adaptive phase.
+    controller: Controller,
+    /// The error of the last attempt in an adaptive phase, over what is allowed.
+    error: f64,
     counts: Counts,
 }
 
@@ -47,18 +52,31 @@ pub struct Position {
     pub dt: f64,
     /// Cuts of the planned step so far.
     pub cuts: usize,
+    /// What chooses the steps of an adaptive phase.
+    pub controller: Controller,
 }
 
 impl Position {
     /// Adds the position to a snapshot.
     pub fn save(&self, snapshot: &mut Snapshot) {
-        snapshot.put("position", vec![self.phase as f64, self.target as f64, self.now, self.dt, self.cuts as f64]);
+        let Self { phase, target, now, dt, cuts, controller } = self;
+        let [last, error] = controller.save();
+        snapshot.put("position", vec![*phase as f64, *target as f64, *now, *dt, *cuts as f64, last, error]);
     }
 
     /// The position that a snapshot holds.
     pub fn restore(snapshot: &Snapshot) -> Result<Self> {
-        let [phase, target, now, dt, cuts] = snapshot.numbers("position")?;
-        Ok(Self { phase: phase as usize, target: target as usize, now, dt, cuts: cuts as usize })
+        let [phase, target, now, dt, cuts, last, error] = snapshot.numbers("position")?;
+        let controller = Controller::restore([last, error]);
+        Ok(Self { phase: phase as usize, target: target as usize, now, dt, cuts: cuts as usize, controller })
+    }
+
+    /// The beginning of a phase; none beyond the last.
+    pub fn start_of(phases: &[Phase], index: usize) -> Option<Self> {
+        let phase = phases.get(index)?;
+        let first = phase.steps.first()?;
+        let dt = phase.adaptive.map_or(first.dt, |adaptive| adapt::landing(adaptive.first, first.dt));
+        Some(Self { phase: index, target: 0, now: phase.start, dt, cuts: 0, controller: Controller::new() })
     }
 }
 
@@ -69,6 +87,8 @@ pub struct Counts {
     pub steps: usize,
     /// Accepted steps that were pieces of a planned one.
     pub pieces: usize,
+    /// Attempts that were rejected: Newton's method failed, or the error was too large.
+    pub rejected: usize,
     /// Newton iterations, those of rejected attempts included.
     pub newton: usize,
     /// Residuals and tangents.
@@ -82,14 +102,16 @@ pub struct Counts {
 impl<'a> Driver<'a> {
     /// A driver at the beginning of the history.
     pub fn new(problem: &'a mut dyn TransientProblem, observer: &'a mut dyn Observer, phases: &'a [Phase]) -> Self {
-        Self { problem, observer, phases, phase: 0, target: 0, now: 0.0, dt: None, cuts: 0, counts: Counts::default() }
+        let (controller, counts) = (Controller::new(), Counts::default());
+        let (phase, target, now, dt, cuts, error) = (0, 0, 0.0, None, 0, 0.0);
+        Self { problem, observer, phases, phase, target, now, dt, cuts, controller, error, counts }
     }
 
     /// The same driver at a later position, where `counts` were counted before. The problem must have been restored
     /// to the state there.
     pub fn at(self, position: Position, counts: Counts) -> Self {
-        let Position { phase, target, now, dt, cuts } = position;
-        Self { phase, target, now, dt: Some(dt), cuts, counts, ..self }
+        let Position { phase, target, now, dt, cuts, controller } = position;
+        Self { phase, target, now, dt: Some(dt), cuts, controller, counts, ..self }
     }
 
     /// Runs the rest of the history; `u` ends as the last accepted state.
@@ -98,8 +120,8 @@ impl<'a> Driver<'a> {
     /// [`Error::Solver`] when a step fails after all cuts; what was accepted before has been observed.
     pub fn run(&mut self, integrator: &mut Integrator, tangent: &mut Matrix, u: &mut Vector) -> Result<()> {
         let Some(phase) = self.phases.get(self.phase) else { return Ok(()) };
-        let Some(target) = phase.steps.get(self.target) else { return Ok(()) };
-        let first = self.attempt(self.dt.unwrap_or(target.dt));
+        let Some(start) = Position::start_of(self.phases, self.phase) else { return Ok(()) };
+        let first = self.attempt(self.dt.unwrap_or(start.dt));
         self.problem.begin(phase.clone());
         let begun = Instant::now();
         let outcome = integrator.solve(self, tangent, u, first);
@@ -120,26 +142,46 @@ impl<'a> Driver<'a> {
         Attempt { now: self.now, dt, max_cuts: MAX_CUTS.min(MOST_CUTS - self.cuts.min(MOST_CUTS)) }
     }
 
-    /// The step after one that ended at `now` and was `dt` long.
-    fn next(&mut self, dt: f64) -> Next {
-        let target = self.phases[self.phase].steps[self.target];
+    /// What the present phase says of its steps, and where the next of them that is planned ends.
+    fn plan(&self) -> (Option<Adaptive>, Target) {
+        let phase = &self.phases[self.phase];
+        (phase.adaptive, phase.steps[self.target])
+    }
+
+    /// The step after one that ended at `now` and was `dt` long, and was rejected before so many times.
+    fn next(&mut self, dt: f64, rejected: usize) -> Next {
+        let (adaptive, target) = self.plan();
         let remaining = target.time - self.now;
-        if remaining > 1e-9 * target.dt {
+        let (next, near) = match adaptive {
+            Some(adaptive) => {
+                self.cuts = 0;
+                (self.controller.accepted(&adaptive, (dt, self.error), rejected > 0), dt)
+            }
             // Inside a planned step that was cut: grow back by two.
-            return Next::Step(self.attempt(remaining.min(2.0 * dt)));
+            None => (2.0 * dt, target.dt),
+        };
+        if remaining > 1e-9 * near {
+            let land = if adaptive.is_some() { adapt::landing } else { f64::min };
+            return Next::Step(self.attempt(land(next, remaining)));
         }
         self.cuts = 0;
         self.now = target.time;
         self.target += 1;
-        if self.target == self.phases[self.phase].steps.len() {
-            self.target = 0;
-            self.phase += 1;
-            match self.phases.get(self.phase) {
-                Some(phase) => self.problem.begin(phase.clone()),
-                None => return Next::Stop,
+        if let Some(target) = self.phases[self.phase].steps.get(self.target) {
+            let dt = adaptive.map_or(target.dt, |_| adapt::landing(next, target.time - self.now));
+            return Next::Step(self.attempt(dt));
+        }
+        match Position::start_of(self.phases, self.phase + 1) {
+            Some(start) => {
+                (self.phase, self.target, self.controller) = (start.phase, start.target, start.controller);
+                self.problem.begin(self.phases[self.phase].clone());
+                Next::Step(self.attempt(start.dt))
+            }
+            None => {
+                (self.phase, self.target) = (self.phase + 1, 0);
+                Next::Stop
             }
         }
-        Next::Step(self.attempt(self.phases[self.phase].steps[self.target].dt))
     }
 }
 
@@ -174,29 +216,55 @@ impl Implicit for Driver<'_> {
         self.problem.test(iteration, norm)
     }
 
+    fn judge(&mut self, step: Step, u: &Vector) -> Result<Judgement> {
+        let phase = &self.phases[self.phase];
+        let Some(adaptive) = &phase.adaptive else { return Ok(Judgement::Accept) };
+        self.error = self.controller.error(adaptive, step.dt, self.problem.departure(step, u)?);
+        if self.error <= 1.0 {
+            return Ok(Judgement::Accept);
+        }
+        let fraction = Controller::retry(self.error);
+        match fraction * step.dt > SHORTEST * phase.end() {
+            true => Ok(Judgement::Retry(fraction)),
+            false => Err(Error::Solver(format!(
+                "the local error of a step of {:.3e} s to t = {:.6e} s is {:.1e} times what the tolerance allows, and no \
+                 shorter one is tried: give a larger tolerance, or steps",
+                step.dt, step.t, self.error
+            ))),
+        }
+    }
+
     fn accepted(&mut self, accepted: Accepted, u: &Vector) -> Result<Next> {
         self.problem.commit(accepted.step, u)?;
         let phase = self.phase;
-        let target = self.phases[phase].steps[self.target];
+        let (adaptive, target) = self.plan();
         self.now = accepted.step.t;
         self.cuts += accepted.cuts;
-        let next = self.next(accepted.step.dt);
-        let planned = self.now == target.time;
+        let next = self.next(accepted.step.dt, accepted.cuts);
+        let reached = self.now == target.time;
+        let planned = reached || adaptive.is_some();
         self.counts.steps += 1;
         self.counts.pieces += usize::from(!planned);
+        self.counts.rejected += accepted.cuts;
         self.counts.newton += accepted.newton;
         let report = Report {
             phase,
             time: self.now,
+            dt: accepted.step.dt,
             planned,
             phase_end: self.phase != phase,
-            bulk_output: target.bulk_output && planned,
+            bulk_output: target.bulk_output && reached,
             newton: accepted.newton,
             counts: self.counts,
             next: match next {
-                Next::Step(Attempt { now, dt, .. }) => {
-                    Some(Position { phase: self.phase, target: self.target, now, dt, cuts: self.cuts })
-                }
+                Next::Step(Attempt { now, dt, .. }) => Some(Position {
+                    phase: self.phase,
+                    target: self.target,
+                    now,
+                    dt,
+                    cuts: self.cuts,
+                    controller: self.controller,
+                }),
                 Next::Stop => None,
             },
             problem: &mut *self.problem,

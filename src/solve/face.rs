@@ -154,6 +154,19 @@ impl ContactFace {
         8.0 * self.interface.noise(self.trial.placement, &self.trial.surface)
     }
 
+    /// How far `u`, at the end of a step from the accepted state, is from where the accepted rates would have taken the
+    /// face, m: the root mean square of d = u - u' - v' dt over as many nodes as carry the displacement,
+    /// (sum d^2 / sum u^2)^1/2 max |u|, so that a small contact on a long face counts for what it is.
+    pub fn departure(&mut self, step: Step, u: &Vector) -> Result<f64> {
+        let ends = self.gather(u)?;
+        let Surface { displacement, rate } = &self.accepted.surface;
+        let starts = displacement.iter().zip(rate);
+        let departed: f64 = ends.iter().zip(starts).map(|(end, (u, v))| (end - u - v * step.dt).powi(2)).sum();
+        let displaced: f64 = ends.iter().map(|u| u * u).sum();
+        let largest = ends.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+        Ok(if displaced > 0.0 { (departed / displaced).sqrt() * largest } else { departed.sqrt() })
+    }
+
     /// Takes the accepted state to the end of an accepted step.
     pub fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {
         let placement = self.phase()?.placement(step.t, step.dt);

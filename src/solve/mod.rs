@@ -1,5 +1,6 @@
 //! Solving the transient problem: what a strategy must offer, and the driver that steps it.
 
+mod adapt;
 mod body;
 mod condensed;
 mod driver;
@@ -42,6 +43,9 @@ pub trait TransientProblem {
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()>;
     /// Judges a Newton iterate by the norm of its residual.
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
+    /// How far `u`, at the end of a step from the accepted state, is from where the accepted rates would have taken the
+    /// face, m; see [`ContactFace::departure`](face::ContactFace::departure).
+    fn departure(&mut self, step: Step, u: &Vector) -> Result<f64>;
     /// Takes the accepted state to the end of an accepted step.
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()>;
     /// Adds the accepted state, with the solution `u`, to a snapshot: all that later steps depend on, down to the last
@@ -100,7 +104,10 @@ pub struct Report<'a> {
     pub phase: usize,
     /// s
     pub time: f64,
-    /// Whether this is where a planned step ends, rather than a piece of one that was cut.
+    /// The length of the step that ends here, s.
+    pub dt: f64,
+    /// Whether this is where a planned step ends, rather than a piece of one that was cut; so are all of an adaptive
+    /// phase.
     pub planned: bool,
     /// Whether the phase ends here.
     pub phase_end: bool,

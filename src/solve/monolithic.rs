@@ -110,6 +110,10 @@ impl TransientProblem for Monolithic {
         self.face.test(iteration, norm, self.tolerance, noise)
     }
 
+    fn departure(&mut self, step: Step, u: &Vector) -> Result<f64> {
+        self.face.departure(step, u)
+    }
+
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {
         self.bulk.commit(step, u)?;
         self.face.commit(step, u)

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::scene::keys::{Quantity, Section};
-use crate::scene::{Motion, Phase};
+use crate::scene::{Motion, Phase, Stepping};
 
 /// All phases, in order; at least one.
 pub(super) fn read_all(root: &Section) -> Result<Vec<Phase>> {
@@ -36,19 +36,31 @@ fn name(section: &Section, index: usize, before: &[Phase]) -> Result<String> {
 }
 
 fn phase(section: &Section, name: String) -> Result<Phase> {
-    const STEPS: &str = "a whole number of steps, at least 1";
     const APPROACH: Quantity = Quantity::any("a normal approach in m");
 
-    section.later(&[("tolerance", "give steps"), ("temperature", super::NO_TEMPERATURE)])?;
-    section.only(&["name", "duration", "steps", "approach", "velocity", "distance", "tangential"])?;
+    section.later(&[("temperature", super::NO_TEMPERATURE)])?;
+    section.only(&["name", "duration", "steps", "tolerance", "approach", "velocity", "distance", "tangential"])?;
     let motion = motion(section)?;
     Ok(Phase {
         name,
         duration: duration(section, motion)?,
-        steps: section.count("steps", STEPS, super::COUNT)?,
+        stepping: stepping(section)?,
         approach: section.optional_number("approach", APPROACH)?,
         motion,
     })
+}
+
+fn stepping(section: &Section) -> Result<Stepping> {
+    const STEPS: &str = "a whole number of steps, at least 1";
+
+    let steps = section.optional_count("steps", STEPS, super::COUNT)?;
+    let tolerance = section.optional_number("tolerance", super::TOLERANCE)?;
+    match (steps, tolerance) {
+        (Some(_), Some(_)) => Err(section.error("tolerance", "give steps or tolerance, not both")),
+        (Some(steps), None) => Ok(Stepping::Steps(steps)),
+        (None, Some(tolerance)) => Ok(Stepping::Tolerance(tolerance)),
+        (None, None) => Err(section.missing("steps", &format!("{STEPS}, or a tolerance"))),
+    }
 }
 
 fn motion(section: &Section) -> Result<Motion> {

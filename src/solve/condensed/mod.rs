@@ -194,6 +194,10 @@ impl<B: Backing> TransientProblem for Condensed<B> {
         self.face.test(iteration, norm, self.tolerance, noise)
     }
 
+    fn departure(&mut self, step: Step, u: &Vector) -> Result<f64> {
+        self.face.departure(step, u)
+    }
+
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {
         self.face.commit(step, u)?;
         if self.backing.takes_forces() {
