@@ -135,13 +135,15 @@ fn strata_are_springs_in_series() {
 }
 
 /// A face that bulges by a parabola under a flat indenter is a flat face under the parabola, but for what the bulge changes
-/// of the body: its height by 4 % at the sides, and directions by 0.02 where the contact ends.
+/// of the body.
 #[test]
 fn a_curved_face_meets_a_flat_indenter() {
     let solve = |bulge: f64, indenter: &str| {
         let mut mesh = BODY.mesh_of_strata(&[PLATE]);
         mesh.nodes.iter_mut().for_each(|node| node.y -= bulge * (node.x - 0.45).powi(2));
         let run = Run::new(&scene(AS_MESH, "region = \"soft\"")).set(format!("indenter={indenter}"));
+        // A parabola that is dragged far presses elsewhere; the bulge does not.
+        let run = run.set("phase.drag.distance=1e-3");
         write(&mesh, &["plate", "soft"], &run.directory().join("body.msh"));
         run.done()
     };
@@ -150,7 +152,7 @@ fn a_curved_face_meets_a_flat_indenter() {
     for column in ["normal_force", "tangential_force"] {
         let (one, other) = (parabola.last(column), bulging.last(column));
         println!("{column}: {one} under a parabola, {other} bulging");
-        assert!((other / one - 1.0).abs() < 0.01, "{column}: {one} under a parabola, {other} bulging");
+        assert!((other / one - 1.0).abs() < 0.005, "{column}: {one} under a parabola, {other} bulging");
     }
 }
 
