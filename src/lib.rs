@@ -21,4 +21,5 @@ pub mod scene;
 pub mod snapshot;
 pub mod solution;
 pub mod solve;
+pub mod study;
 pub mod verify;

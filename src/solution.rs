@@ -23,9 +23,14 @@ pub struct Solution {
     pub counts: Counts,
 }
 
-/// Solves a scene on all ranks of `comm`.
+/// Solves a scene that needs no other files, on all ranks of `comm`.
 pub fn solve(comm: &SimpleCommunicator, scene: &Scene) -> Result<Solution> {
-    solve_problem(composition::build(comm, scene, Path::new(""))?)
+    solve_beside(comm, scene, Path::new(""))
+}
+
+/// Solves the scene of `file`, beside which its other files are, on all ranks of `comm`.
+pub fn solve_beside(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Solution> {
+    solve_problem(composition::build(comm, scene, file)?)
 }
 
 /// Solves a scene on all ranks of `comm`, with the bytes of the .msh file that it names instead of the file.

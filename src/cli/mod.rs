@@ -11,6 +11,7 @@ mod profile;
 mod progress;
 mod record;
 mod run;
+mod study;
 mod summary;
 mod sweep;
 mod verify;
@@ -42,6 +43,8 @@ enum Command {
     Check(check::CheckArguments),
     /// Identify a Prony series from measured data or from the fractional power law
     Fit(fit::FitArgs),
+    /// Solve a scene over ladders of settings: accuracy against cost, and what is cheapest for an error
+    Study(study::StudyArguments),
     /// Solve scenes with a known answer and compare; the exit code is 1 if any differs by more than its tolerance
     Verify(verify::VerifyArguments),
     /// Draw figures from results
@@ -81,6 +84,7 @@ pub fn main() -> i32 {
                 Ok(())
             }
         }
+        Command::Study(arguments) => study::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
     };
     match outcome {

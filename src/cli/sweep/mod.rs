@@ -17,7 +17,9 @@ use mpi::traits::Communicator;
 
 use self::board::Board;
 use self::folder::Folder;
+pub(super) use self::folder::replace;
 use self::group::Group;
+pub(super) use self::summary::line;
 use self::tasks::Tasks;
 use super::interrupt::Interrupt;
 use crate::composition::{Form, form};

@@ -58,7 +58,7 @@ pub fn write(sweep: &Sweep, folder: &Folder) -> Result<()> {
 }
 
 /// A line of a table separated by commas (RFC 4180).
-fn line(cells: impl Iterator<Item = String>) -> String {
+pub fn line(cells: impl Iterator<Item = String>) -> String {
     let quoted = |cell: String| match cell.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", cell.replace('"', "\"\"")),
         false => cell,
