@@ -57,11 +57,15 @@ pub fn build_with_profile(comm: &SimpleCommunicator, scene: &Scene, profile: Box
     let mesh = layer(&scene.layer).mesh();
     let laws = Laws { profile, penalty: scene.contact.penalty, friction: scene.friction.as_ref().map(friction) };
     let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
-    match form(scene) {
-        Form::Monolithic => monolithic(comm, scene, mesh, interface),
-        Form::Following => following(comm, scene, mesh, interface),
-        Form::Remembering => remembering(comm, scene, mesh, interface),
+    let mut problem = match form(scene) {
+        Form::Monolithic => monolithic(comm, scene, mesh, interface)?,
+        Form::Following => following(comm, scene, mesh, interface)?,
+        Form::Remembering => remembering(comm, scene, mesh, interface)?,
+    };
+    if scene.output.energy {
+        problem.strategy.keep_account(&problem.u)?;
     }
+    Ok(problem)
 }
 
 /// How a scene is solved.
@@ -113,7 +117,7 @@ fn following(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: In
         None => None,
     };
     let interior = Interior::new(comm, mesh.clone(), moduli);
-    let backing = Following { compliance, softness, relaxation, interior, secant: 1.0 };
+    let backing = Following { compliance, softness, relaxation, interior, secant: 1.0, account: None };
     condensed(comm, scene, mesh, u, (interface, backing))
 }
 

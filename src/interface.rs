@@ -3,6 +3,7 @@
 //! Every rank holds the whole face (it is one dimension smaller than the body) and evaluates all of it from the same
 //! numbers, so every rank sees the same error and the same totals; each rank assembles only the rows that it owns.
 
+mod exchange;
 mod oscillation;
 
 use nalgebra::{Matrix2, Vector2};
@@ -13,6 +14,8 @@ use crate::friction::Friction;
 use crate::loading::Placement;
 use crate::mesh::Face;
 use crate::profile::{Elevation, Profile};
+
+pub use exchange::Exchange;
 
 /// Displacements and rates of the face's nodes, in the order of the face: x, z of each.
 #[derive(Debug, Clone, PartialEq)]

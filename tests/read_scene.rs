@@ -55,7 +55,7 @@ fn what_may_be_absent_has_its_default() {
     assert_eq!(scene.contact.quadrature, Quadrature::Nodal);
     assert_eq!(scene.friction, None);
     assert_eq!(scene.solver, Solver { strategy: Strategy::Auto, tolerance: 1e-8 });
-    assert_eq!(scene.output, Output { interface_every: 1, bulk_at: vec![], checkpoint_every: 0 });
+    assert_eq!(scene.output, Output { interface_every: 1, bulk_at: vec![], checkpoint_every: 0, energy: true });
     let [first, second] = scene.phases.as_slice() else { panic!("two phases") };
     assert_eq!((first.name.as_str(), second.name.as_str()), ("phase-1", "phase-2"));
     assert_eq!((first.approach, first.motion), (None, Motion::Velocity(0.0)));
@@ -330,6 +330,7 @@ impl Random {
                 interface_every: self.below(3) as usize,
                 bulk_at: if self.below(2) == 0 { vec![] } else { ends.chain(times).collect() },
                 checkpoint_every: self.below(3) as usize,
+                energy: self.below(2) == 0,
             },
             phases,
             solver: Solver {

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::material;
 use crate::composition::{self, Form};
+use crate::energy::Energy;
 use crate::output::{HistoryRow, Status};
 use crate::petsc;
 use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
@@ -40,6 +41,8 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
             Quadrature::Gauss => "two-point Gauss",
         }
     ));
+    let balance = if scene.output.energy { &mut yes } else { &mut no };
+    balance.push("energy balance".to_owned());
     if scene.output.bulk_at.is_empty() {
         no.push("stress recovery and bulk output".to_owned());
     } else {
@@ -128,6 +131,9 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
         "{:<15}{:.4} of the face, {:.4} of it sticking; penetration {:.1e} m",
         "final contact:", last.contact_fraction, last.stick_fraction, last.max_penetration
     );
+    if scene.output.energy {
+        let _ = writeln!(text, "{:<15}{}", "energy:", balance(&last.energy));
+    }
     let _ = writeln!(text, "{:<15}{} steps, {} Newton iterations{pieces}", "work:", counts.steps, counts.newton);
     let _ = writeln!(
         text,
@@ -143,6 +149,16 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     let _ = writeln!(text, "{:<15}at most {:.2} GB a rank", "memory:", petsc::peak_memory() as f64 / 1e9);
     let _ = writeln!(text, "{:<15}{blas}", "BLAS:");
     text
+}
+
+/// The energy balance as a sum.
+fn balance(energy: &Energy) -> String {
+    let Energy { external_work, stored, viscoelastic_dissipation, friction_dissipation, penalty, imbalance } = energy;
+    format!(
+        "work {external_work:.3e} = stored {stored:.3e} + arms {viscoelastic_dissipation:.3e} + friction \
+         {friction_dissipation:.3e}\n{:15}+ penalty {penalty:.3e} + imbalance {imbalance:.3e} J/m",
+        ""
+    )
 }
 
 /// How the scene is solved, and why.

@@ -7,6 +7,14 @@
 //! exponential:     decay = e^-x,         gain = phi(x) = (1 - e^-x)/x    exact for u linear over the step
 //! backward Euler:  decay = gain = 1/(1 + x)
 //! ```
+//!
+//! Its dashpot moves at z/tau_i and dissipates |z|^2/tau_i, in units of the arm's stiffness; over the step
+//!
+//! ```text
+//! a |z|^2 + 2 b z.du + c |du|^2,    du = u+ - u
+//! exponential:     a = x phi(2x),   b = x phi(x)^2 / 2,   c = (x - 2 (1 - e^-x) + (1 - e^-2x)/2) / x^2
+//! backward Euler:  a = b = c = x/(1 + x)^2,  that is x |z+|^2
+//! ```
 
 /// The time integration of an arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,6 +34,17 @@ pub struct Factors {
     pub gain: f64,
 }
 
+/// What the dashpot dissipates over a step: held |z|^2 + 2 mixed z.du + fresh |du|^2, never below zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Losses {
+    /// a
+    pub held: f64,
+    /// b
+    pub mixed: f64,
+    /// c
+    pub fresh: f64,
+}
+
 impl Memory {
     /// The factors at x = dt/tau >= 0, to full precision at both ends.
     pub fn factors(self, x: f64) -> Factors {
@@ -34,4 +53,34 @@ impl Memory {
             Self::BackwardEuler => Factors { decay: 1.0 / (1.0 + x), gain: 1.0 / (1.0 + x) },
         }
     }
+
+    /// The losses at x = dt/tau >= 0, to full precision at both ends.
+    pub fn losses(self, x: f64) -> Losses {
+        let gain = self.factors(x).gain;
+        match self {
+            Self::BackwardEuler => {
+                let all = x * gain * gain;
+                Losses { held: all, mixed: all, fresh: all }
+            }
+            Self::Exponential => {
+                Losses { held: -0.5 * (-2.0 * x).exp_m1(), mixed: 0.5 * x * gain * gain, fresh: fresh_loss(x) }
+            }
+        }
+    }
+}
+
+/// (x - 2 (1 - e^-x) + (1 - e^-2x)/2) / x^2 = x/3 - x^2/4 + ...
+fn fresh_loss(x: f64) -> f64 {
+    if x > 0.5 {
+        return (x + 2.0 * (-x).exp_m1() - 0.5 * (-2.0 * x).exp_m1()) / x / x;
+    }
+    // The closed form cancels; of its power series, sum over n >= 3 of (2^(n-1) - 2) (-1)^(n+1) x^(n-2) / n!, 20 terms are
+    // below round-off.
+    let (mut sum, mut power, mut doubled) = (0.0, x / 6.0, 4.0);
+    for n in 3..23 {
+        sum += power * (doubled - 2.0);
+        power *= -x / f64::from(n + 1);
+        doubled *= 2.0;
+    }
+    sum
 }

@@ -228,6 +228,8 @@ pub struct Output {
     pub bulk_at: Vec<When>,
     /// Steps between checkpoints; 0 = only on a signal.
     pub checkpoint_every: usize,
+    /// Whether the energy balance is.
+    pub energy: bool,
 }
 
 /// A moment of the loading history.

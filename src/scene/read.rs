@@ -191,14 +191,15 @@ fn solver(section: Option<&Section>) -> Result<Solver> {
 fn output(section: Option<&Section>) -> Result<Output> {
     const STEPS: &str = "a whole number of steps, at least 0";
 
-    let default = Output { interface_every: 1, bulk_at: Vec::new(), checkpoint_every: 0 };
+    let default = Output { interface_every: 1, bulk_at: Vec::new(), checkpoint_every: 0, energy: true };
     let Some(section) = section else { return Ok(default) };
-    section.only(&["interface_every", "bulk_at", "checkpoint_every"])?;
+    section.only(&["interface_every", "bulk_at", "checkpoint_every", "energy"])?;
     let count = |key: &str| section.optional_count(key, STEPS, 0..=usize::MAX);
     Ok(Output {
         interface_every: count("interface_every")?.unwrap_or(default.interface_every),
         bulk_at: bulk_at(section)?,
         checkpoint_every: count("checkpoint_every")?.unwrap_or(default.checkpoint_every),
+        energy: section.optional_flag("energy")?.unwrap_or(default.energy),
     })
 }
 
