@@ -84,3 +84,39 @@ fn fresh_loss(x: f64) -> f64 {
     }
     sum
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The losses of the exponential update against the midpoint rule on |z(t)|^2/tau for u linear over the step, from
+    /// short to long steps and across the change of formula; and both ends.
+    #[test]
+    fn losses_are_the_integral_over_the_step() {
+        for x in [1e-3, 0.1, 0.499, 0.501, 2.0, 30.0_f64] {
+            let losses = Memory::Exponential.losses(x);
+            let count = 200_000;
+            let (mut held, mut mixed, mut fresh) = (0.0, 0.0, 0.0);
+            for i in 0..count {
+                let y = x * (f64::from(i) + 0.5) / f64::from(count);
+                let (old, new) = ((-y).exp(), -(-y).exp_m1() / x);
+                held += old * old * x / f64::from(count);
+                mixed += old * new * x / f64::from(count);
+                fresh += new * new * x / f64::from(count);
+            }
+            for (computed, exact) in [(losses.held, held), (losses.mixed, mixed), (losses.fresh, fresh)] {
+                assert!((computed / exact - 1.0).abs() < 1e-8, "{x}: {computed} {exact}");
+            }
+        }
+        for rule in [Memory::Exponential, Memory::BackwardEuler] {
+            let Losses { held, mixed, fresh } = rule.losses(0.0);
+            assert_eq!((held, mixed, fresh), (0.0, 0.0, 0.0));
+            for x in [1e-300, 1e-14, 1e-7, 0.5, 1e7, 1e14, 1e300] {
+                let Losses { held, mixed, fresh } = rule.losses(x);
+                assert!(held >= 0.0 && fresh >= 0.0 && held * fresh >= mixed * mixed * (1.0 - 1e-12), "{rule:?} {x}");
+            }
+        }
+        let short = Memory::Exponential.losses(1e-9);
+        assert!((short.fresh / (1e-9 / 3.0) - 1.0).abs() < 1e-8 && (short.mixed / 0.5e-9 - 1.0).abs() < 1e-8);
+    }
+}
