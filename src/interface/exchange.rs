@@ -40,11 +40,8 @@ impl Exchange {
 
     /// Takes the account to the end of an accepted step of length `dt`, s, where the face is as given.
     pub fn advance(&mut self, interface: &mut Interface, place: Placement, surface: &Surface, dt: f64) -> Result<()> {
-        let totals = interface.totals(place, surface)?;
-        let (normal, along) = (totals.normal_force, totals.tangential_force + totals.hysteretic_force);
-        self.energy.work += 0.5 * (self.normal + normal) * (place.approach - self.place.approach)
-            + 0.5 * (self.along + along) * (place.sliding - self.place.sliding);
-        (self.normal, self.along, self.place) = (normal, along, place);
+        interface.place(place)?;
+        let (mut normal, mut along) = (0.0, 0.0);
         let (law, penalty) = (interface.laws.friction.as_ref(), interface.laws.penalty);
         self.energy.penalty = 0.0;
         for ((point, elevation), before) in interface.points.iter().zip(&interface.elevations).zip(&mut self.shear) {
@@ -53,7 +50,13 @@ impl Exchange {
             self.energy.friction += point.weight * 0.5 * (*before + traction.shear) * motion.slip_rate * dt;
             self.energy.penalty += point.weight * 0.5 * traction.pressure * traction.pressure / penalty;
             *before = traction.shear;
+            let [down, tangential, hysteretic] = point.forces(&traction, elevation.slope);
+            normal += down;
+            along += tangential + hysteretic;
         }
+        self.energy.work += 0.5 * (self.normal + normal) * (place.approach - self.place.approach)
+            + 0.5 * (self.along + along) * (place.sliding - self.place.sliding);
+        (self.normal, self.along, self.place) = (normal, along, place);
         Ok(())
     }
 
