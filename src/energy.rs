@@ -4,12 +4,12 @@
 //! work of the indenter = stored + dissipated in the arms + dissipated by friction + penalty + imbalance
 //! ```
 //!
-//! Each term is computed for itself, so that the imbalance says how well the steps resolve the history. The forces are in
-//! balance at the ends of steps, and their work over a step is that of their mean:
+//! Each term is computed for itself, so that the imbalance says how well the steps resolve the history. The contact forces
+//! are known at the ends of steps, and their work over a step is that of their mean. What the dashpots dissipate is
 //!
-//! - the imbalance is of second order in dt with the exponential memory: the arms' dissipation is exact for a displacement
-//!   that is linear over the step, and their force is not linear then;
-//! - it is of first order with backward Euler, whose dashpots move at the rate that they have at the end of the step.
+//! - with the exponential memory, that of a displacement which is linear over the step: the imbalance is of second order in
+//!   dt, and of first order only from steps within which a motion sets in;
+//! - with backward Euler, that of the rate which they have at the end of the step: it is of first order.
 
 /// The energy balance, J/m, cumulative from t = 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -193,7 +193,8 @@ fn a_sinusoid_is_the_boltzmann_integral() {
 }
 
 /// Over a settled cycle the indenter supplies pi G'' e0^2 per volume, e0 = amplitude/H, and the arms dissipate it: of second
-/// order in the step with the exponential update and of first with backward Euler, and so what does not balance.
+/// order in the step with the exponential update and of first with backward Euler. What does not balance over the cycle is
+/// of second order with either: the first-order share of backward Euler is a change of state, which a cycle undoes.
 #[test]
 fn a_cycle_dissipates_pi_times_the_loss_modulus() {
     let (period, cycles) = (1.3, 30usize);
@@ -203,7 +204,7 @@ fn a_cycle_dissipates_pi_times_the_loss_modulus() {
     };
     let loss = solid.shear.instantaneous * series.complex_modulus(TAU / period).im;
     let exact = PI * loss * (AMPLITUDE / DEPTH).powi(2) * WIDTH * DEPTH;
-    for (memory, order, per_cycle, allowed) in [("exponential", 2.0, 50, 2e-3), ("backward_euler", 1.0, 200, 1e-2)] {
+    for (memory, order, per_cycle, allowed) in [("exponential", 2.0, 50, 2e-3), ("backward_euler", 1.0, 75, 3e-2)] {
         let errors = |per_cycle: usize| {
             let results = sheared(solid, memory, (period * cycles as f64, cycles as f64, per_cycle * cycles));
             let gain = |name: &str| {
@@ -215,7 +216,7 @@ fn a_cycle_dissipates_pi_times_the_loss_modulus() {
             [work / exact - 1.0, lost / exact - 1.0, gain("imbalance") / exact]
         };
         let (coarse, fine) = (errors(per_cycle), errors(2 * per_cycle));
-        for (coarse, fine) in coarse.into_iter().zip(fine) {
+        for ((coarse, fine), order) in coarse.into_iter().zip(fine).zip([order, order, 2.0]) {
             let observed = (coarse / fine).log2();
             assert!(fine.abs() < allowed, "{memory}: {fine}");
             assert!((observed - order).abs() < 0.1, "{memory}: order {observed}, {coarse} {fine}");
