@@ -70,7 +70,7 @@ fn a_run_has_seven_figures() {
             "dissipated by friction",
             "work less friction",
             "stored in the layer",
-            "imbalance, J/m",
+            "what does not balance",
         ],
         &["(a) approach: pressure", "(b) from stick to slip: shear traction", "(c) gross sliding", "pressure p, Pa"],
         &["(a) σ_zz, t = 10 s", "(d) τ_xz", "σ_zz / E(0), 10⁻⁴", "x, m (shifted by half a period)"],
