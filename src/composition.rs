@@ -59,6 +59,13 @@ pub fn build_with_profile(comm: &SimpleCommunicator, scene: &Scene, profile: Box
     assemble(comm, scene, body::mesh(comm, scene, Path::new(""))?, profile)
 }
 
+/// As [`build`], with the bytes of the .msh file that the scene names, on every rank, instead of the file.
+pub fn build_on_mesh(comm: &SimpleCommunicator, scene: &Scene, bytes: &[u8]) -> Result<Problem> {
+    let mesh = body::mesh_of(bytes, scene)?;
+    let profile = shape(scene, Path::new(""), &[], Stretch::of(scene, &mesh.face))?.profile;
+    assemble(comm, scene, mesh, profile)
+}
+
 fn assemble(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, profile: Box<dyn Profile>) -> Result<Problem> {
     let materials = Materials::new(scene);
     let laws = Laws { profile, penalty: scene.contact.penalty, friction: scene.friction.as_ref().map(friction) };

@@ -99,6 +99,14 @@ impl Stretch {
     }
 }
 
+/// The mesh of the scene, of a .msh file with these bytes where the scene wants one.
+pub fn mesh_of(bytes: &[u8], scene: &Scene) -> Result<Mesh> {
+    match &scene.body {
+        scene::Body::Layer(layer) => Ok(layer_mesh(layer, scene)),
+        scene::Body::Mesh(mesh) => file_mesh(bytes, mesh, scene, &mesh.file),
+    }
+}
+
 fn bytes(mesh: &MeshFile) -> Result<Vec<u8>> {
     std::fs::read(&mesh.file).map_err(|error| Error::file(&mesh.file, format!("cannot be read: {error}")))
 }
