@@ -68,7 +68,8 @@ pub fn build_on_mesh(comm: &SimpleCommunicator, scene: &Scene, bytes: &[u8]) -> 
 
 fn assemble(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, profile: Box<dyn Profile>) -> Result<Problem> {
     let materials = Materials::new(scene);
-    let laws = Laws { profile, penalty: scene.contact.penalty, friction: scene.friction.as_ref().map(friction) };
+    let penalty = body::penalty(scene, &mesh);
+    let laws = Laws { profile, penalty, friction: scene.friction.as_ref().map(friction) };
     let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
     let solid = Solid { mesh, quadrilateral: body::quadrilateral(scene), regions: materials.regions.clone() };
     let mut problem = match form(scene) {

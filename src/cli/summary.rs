@@ -8,7 +8,7 @@ use crate::composition::{self, Form, Outline, Stretch};
 use crate::energy::Energy;
 use crate::output::{HistoryRow, Status};
 use crate::petsc;
-use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
+use crate::scene::{Friction, Penalty, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
 use crate::solve::Counts;
 
 /// What is modelled and what is not: (modelled, not modelled).
@@ -36,13 +36,9 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
         }
         None => no.push("friction (symmetric solver)".to_owned()),
     }
-    let softer = scene.layer().map_or_else(String::new, |layer| {
-        let added = added_compliance(scene.contact.penalty, layer, &scene.materials);
-        format!(" ({added:.2e} of the compliance to the wave the layer is stiffest to)")
-    });
     yes.push(format!(
-        "contact: penalty {:.3e} Pa/m{softer}, {} quadrature",
-        scene.contact.penalty,
+        "contact: penalty {}, {} quadrature",
+        penalty(scene),
         match scene.contact.quadrature {
             Quadrature::Nodal => "nodal",
             Quadrature::Gauss => "two-point Gauss",
@@ -59,6 +55,18 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
     (yes, no)
 }
 
+/// The penalty, and how much it softens a layer.
+fn penalty(scene: &Scene) -> String {
+    match (scene.contact.penalty, scene.layer()) {
+        (Penalty::Stiffness(stiffness), Some(layer)) => {
+            let added = added_compliance(stiffness, layer, &scene.materials);
+            format!("{stiffness:.3e} Pa/m ({added:.2e} of the compliance to the wave the layer is stiffest to)")
+        }
+        (Penalty::Stiffness(stiffness), None) => format!("{stiffness:.3e} Pa/m"),
+        (Penalty::Tolerance(tolerance), _) => format!("that softens the body by {tolerance} at most"),
+    }
+}
+
 /// What `mpjr check` prints after the resolved scene.
 pub fn plan(scene: &Scene, outline: &Outline) -> String {
     let (yes, no) = modelled(scene);
@@ -69,6 +77,9 @@ pub fn plan(scene: &Scene, outline: &Outline) -> String {
     let _ = writeln!(text, "not modelled:  {}", no.join("\n               "));
     text += &material::lines(scene);
     let _ = writeln!(text, "mesh:          {}, {} unknowns", extent(scene, outline), outline.unknowns);
+    if let Some(penalty) = outline.penalty {
+        let _ = writeln!(text, "penalty:       {penalty:.3e} Pa/m");
+    }
     let _ = writeln!(
         text,
         "loading:       {} phase(s), {} steps, {:.6} s",

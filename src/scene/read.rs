@@ -12,8 +12,8 @@ use toml::Table;
 
 use super::keys::{self, Quantity, Section};
 use super::{
-    Body, Contact, Friction, Load, Material, Output, Quadrature, Scene, Solver, Source, Strategy, When, checks,
-    include, overrides, penalty_for,
+    Body, Contact, Friction, Load, Material, Output, Penalty, Quadrature, Scene, Solver, Source, Strategy, When,
+    checks, include, overrides, penalty_for,
 };
 use crate::error::{Error, Result};
 
@@ -105,7 +105,7 @@ fn contact(section: &Section, body: &Body, materials: &[Material]) -> Result<Con
 }
 
 /// The penalty, given as itself or as the compliance that it may add.
-fn penalty(section: &Section, body: &Body, materials: &[Material]) -> Result<f64> {
+fn penalty(section: &Section, body: &Body, materials: &[Material]) -> Result<Penalty> {
     const PENALTY: Quantity = Quantity::positive("a positive stiffness in Pa/m");
     const TOLERANCE: Quantity =
         Quantity { what: "a relative tolerance above 0 and below 1", accepts: |value| value > 0.0 && value < 1.0 };
@@ -114,13 +114,13 @@ fn penalty(section: &Section, body: &Body, materials: &[Material]) -> Result<f64
     let tolerance = section.optional_number("tolerance", TOLERANCE)?;
     match (penalty, tolerance) {
         (Some(_), Some(_)) => Err(section.error("tolerance", "give penalty or tolerance, not both")),
-        (Some(penalty), None) => Ok(penalty),
+        (Some(penalty), None) => Ok(Penalty::Stiffness(penalty)),
         (None, Some(tolerance)) => {
             let Body::Layer(layer) = body else {
-                return Err(section.error("tolerance", "is for a [layer]; give penalty, in Pa/m"));
+                return Ok(Penalty::Tolerance(tolerance));
             };
             match penalty_for(tolerance, layer, materials) {
-                penalty if penalty.is_finite() && penalty > 0.0 => Ok(penalty),
+                penalty if penalty.is_finite() && penalty > 0.0 => Ok(Penalty::Stiffness(penalty)),
                 penalty => {
                     Err(section.error("tolerance", format!("gives a penalty of {penalty:?} Pa/m; give another")))
                 }
