@@ -68,14 +68,19 @@ pub fn build_on_mesh(comm: &SimpleCommunicator, scene: &Scene, bytes: &[u8]) -> 
 
 fn assemble(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, profile: Box<dyn Profile>) -> Result<Problem> {
     let materials = Materials::new(scene);
-    let laws = Laws { profile, penalty: scene.contact.penalty, friction: scene.friction.as_ref().map(friction) };
+    let penalty = body::penalty(scene, &mesh);
+    let laws = Laws { profile, penalty, friction: scene.friction.as_ref().map(friction) };
     let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
     let solid = Solid { mesh, quadrilateral: body::quadrilateral(scene), regions: materials.regions.clone() };
-    match form(scene) {
-        Form::Monolithic => monolithic(comm, scene, (solid, materials), interface),
-        Form::Following => following(comm, scene, (solid, materials), interface),
-        Form::Remembering => remembering(comm, scene, (solid, materials), interface),
+    let mut problem = match form(scene) {
+        Form::Monolithic => monolithic(comm, scene, (solid, materials), interface)?,
+        Form::Following => following(comm, scene, (solid, materials), interface)?,
+        Form::Remembering => remembering(comm, scene, (solid, materials), interface)?,
+    };
+    if scene.output.energy {
+        problem.strategy.keep_account(&problem.u)?;
     }
+    Ok(problem)
 }
 
 /// How a scene is solved.
@@ -138,7 +143,7 @@ fn following(
         None => None,
     };
     let interior = Interior::new(comm, solid);
-    let backing = Following { compliance, softness, relaxation, interior, secant: 1.0 };
+    let backing = Following { compliance, softness, relaxation, interior, secant: 1.0, account: None };
     condensed(comm, scene, mesh, u, (interface, backing))
 }
 

@@ -61,6 +61,7 @@ impl Solution {
 
 /// The row of the history that says where a run is.
 pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
+    let energy = report.problem.energy().unwrap_or_default();
     let mut contact = report.problem.contact()?;
     let totals = contact.totals()?;
     Ok(HistoryRow {
@@ -76,7 +77,7 @@ pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
         max_penetration: totals.max_penetration,
         traction_oscillation: totals.traction_oscillation,
         newton_iterations: report.newton,
-        ..HistoryRow::default()
+        energy,
     })
 }
 

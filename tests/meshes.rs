@@ -122,6 +122,21 @@ fn regions_of_a_mesh_are_strata_of_a_layer() {
     }
 }
 
+/// The penalty by tolerance: that of the layer with the same nodes, whose upper stratum is all that the shortest wave meets,
+/// and is stiffer to it than all strata are to the mean.
+#[test]
+fn a_tolerance_is_a_penalty_on_a_mesh_too() {
+    let set = |run: Run| run.set("contact={ tolerance = 1e-3 }");
+    let layer = set(Run::new(&scene(AS_LAYER, ""))).done();
+    let run = set(Run::new(&scene(AS_MESH, "region = \"soft\"")));
+    write(&BODY.mesh_of_strata(&[PLATE]), &["plate", "soft"], &run.directory().join("body.msh"));
+    let mesh = run.done();
+    for column in ["normal_force", "max_penetration"] {
+        let (layer, mesh) = (layer.last(column), mesh.last(column));
+        assert!(mesh > 0.0 && (mesh / layer - 1.0).abs() < 1e-6, "{column}: {mesh} {layer}");
+    }
+}
+
 /// Strata under a flat indenter between rollers are springs in series: N/width = D/(sum of h (1-2nu)/(2 G (1-nu)) + 1/alpha).
 #[test]
 fn strata_are_springs_in_series() {

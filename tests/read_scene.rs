@@ -60,7 +60,7 @@ fn what_may_be_absent_has_its_default() {
     assert_eq!(scene.contact.quadrature, Quadrature::Nodal);
     assert_eq!(scene.friction, None);
     assert_eq!(scene.solver, Solver { strategy: Strategy::Auto, tolerance: 1e-8 });
-    assert_eq!(scene.output, Output { interface_every: 1, bulk_at: vec![], checkpoint_every: 0 });
+    assert_eq!(scene.output, Output { interface_every: 1, bulk_at: vec![], checkpoint_every: 0, energy: true });
     let [first, second] = scene.phases.as_slice() else { panic!("two phases") };
     assert_eq!((first.name.as_str(), second.name.as_str()), ("phase-1", "phase-2"));
     assert_eq!((first.approach, first.motion), (None, Motion::Velocity(0.0)));
@@ -91,7 +91,7 @@ fn the_paper_s_scene_is_read_as_written() {
 /// pressure where it hardly changes its volume; both by hand.
 #[test]
 fn a_tolerance_is_a_penalty() {
-    let penalty = |overrides: &[&str]| read_set(SMALLEST, overrides).unwrap().contact.penalty;
+    let penalty = |overrides: &[&str]| read_set(SMALLEST, overrides).unwrap().contact.penalty.stiffness().unwrap();
     let tolerance = "contact={ tolerance = 1e-2 }";
     // G = 1 Pa, dx = 0.5 m: C = 0.7 * 0.5 / pi m/Pa.
     let wave = std::f64::consts::PI / (0.7 * 0.5) / 1e-2;
@@ -101,7 +101,7 @@ fn a_tolerance_is_a_penalty() {
     let set = [tolerance, "material={ shear_modulus = 1, poisson_ratio = 0.49 }"];
     assert!((penalty(&set) * 1e-2 * 0.02 / 1.02 - 1.0).abs() < 1e-12);
     let scene = read_set(SMALLEST, &set).unwrap();
-    assert!((added_compliance(scene.contact.penalty, layer(&scene), &scene.materials) - 1e-2).abs() < 1e-15);
+    assert!((added_compliance(penalty(&set), layer(&scene), &scene.materials) - 1e-2).abs() < 1e-15);
 }
 
 #[test]
@@ -289,7 +289,10 @@ impl Random {
         let ends = phases.iter().take(2).map(|phase| When::PhaseEnd(phase.name.clone()));
         let times = [When::Time(phases[0].duration * self.unit())];
         let body = if self.below(4) == 0 { self.mesh_file() } else { self.layer(wavelength) };
-        let materials = self.materials(&body);
+        let mut materials = self.materials(&body);
+        if phases.iter().any(|phase| matches!(phase.stepping, Stepping::Tolerance(_))) {
+            materials.iter_mut().for_each(|material| material.memory = Memory::Exponential);
+        }
         Scene {
             title: self.of(&["", "plain", "é \"quoted\" \\ # = [layer]", "'''"]).to_owned(),
             body,
@@ -311,7 +314,7 @@ impl Random {
                 },
             ]),
             contact: Contact {
-                penalty: 1e200 * self.positive(),
+                penalty: Penalty::Stiffness(1e200 * self.positive()),
                 quadrature: self.of(&[Quadrature::Nodal, Quadrature::Gauss]),
             },
             friction: self.of(&[None, Some(friction)]),
@@ -319,6 +322,7 @@ impl Random {
                 interface_every: self.below(3) as usize,
                 bulk_at: if self.below(2) == 0 { vec![] } else { ends.chain(times).collect() },
                 checkpoint_every: self.below(3) as usize,
+                energy: self.below(2) == 0,
             },
             phases,
             solver: Solver {
@@ -421,4 +425,23 @@ fn damaged_files_are_errors_of_one_line() {
         assert!(read_set(&nested, &[]).is_err());
         assert!(read_set(SMALLEST, &[&nested]).is_err());
     }
+}
+
+/// A preset says the steps of phases that say none and the tolerance of Newton's method; what the scene says goes first.
+#[test]
+fn presets_resolve() {
+    let text = include_str!("scenes/sliding.toml").replace("steps = 100\n", "");
+    let with = |preset: &str, set: &[&str]| {
+        let overrides = set.iter().map(|set| (*set).to_owned()).chain([format!("solver.preset={preset}")]).collect();
+        read(&text, &Source { file: "sliding.toml".into(), overrides })
+    };
+    for (preset, steps, newton) in [("fast", 1e-2, 1e-6), ("balanced", 1e-3, 1e-8), ("reference", 1e-4, 1e-10)] {
+        let scene = with(preset, &[]).unwrap();
+        assert_eq!(scene.phases[0].stepping, Stepping::Steps(50));
+        assert_eq!(scene.phases[1].stepping, Stepping::Tolerance(steps));
+        assert_eq!(scene.solver.tolerance, newton);
+        assert_round_trip(&scene);
+    }
+    let scene = with("fast", &["solver.tolerance=1e-9", "phase.slide.tolerance=0.1"]).unwrap();
+    assert_eq!((scene.solver.tolerance, scene.phases[1].stepping), (1e-9, Stepping::Tolerance(0.1)));
 }

@@ -12,8 +12,8 @@ use toml::Table;
 
 use super::keys::{self, Quantity, Section};
 use super::{
-    Body, Contact, Friction, Load, Material, Output, Quadrature, Scene, Solver, Source, Strategy, When, checks,
-    include, overrides, penalty_for,
+    Body, Contact, Friction, Load, Material, Output, Penalty, Quadrature, Scene, Solver, Source, Strategy, When,
+    checks, include, overrides, penalty_for,
 };
 use crate::error::{Error, Result};
 
@@ -65,14 +65,16 @@ pub fn from_table(table: &Table, file: &Path) -> Result<Scene> {
     let title = title(&root, file)?;
     let body = body::read(&root, file)?;
     // The history says over which times the materials must hold.
-    let phases = phase::read_all(&root)?;
+    let solver_section = root.optional_section("solver")?;
+    let preset = solver_section.as_ref().map(preset).transpose()?.flatten();
+    let phases = phase::read_all(&root, preset)?;
     let materials = body::materials(&root, &body, super::material::band(&phases))?;
     let mut scene = Scene {
         indenter: indenter::read(&root.section("indenter")?)?,
         contact: contact(&root.section("contact")?, &body, &materials)?,
         friction: root.optional_section("friction")?.as_ref().map(friction).transpose()?,
         phases,
-        solver: solver(root.optional_section("solver")?.as_ref())?,
+        solver: solver(solver_section.as_ref(), preset)?,
         output: output(root.optional_section("output")?.as_ref())?,
         title,
         body,
@@ -108,20 +110,20 @@ fn contact(section: &Section, body: &Body, materials: &[Material]) -> Result<Con
 }
 
 /// The penalty, given as itself or as the compliance that it may add.
-fn penalty(section: &Section, body: &Body, materials: &[Material]) -> Result<f64> {
+fn penalty(section: &Section, body: &Body, materials: &[Material]) -> Result<Penalty> {
     const PENALTY: Quantity = Quantity::positive("a positive stiffness in Pa/m");
 
     let penalty = section.optional_number("penalty", PENALTY)?;
     let tolerance = section.optional_number("tolerance", TOLERANCE)?;
     match (penalty, tolerance) {
         (Some(_), Some(_)) => Err(section.error("tolerance", "give penalty or tolerance, not both")),
-        (Some(penalty), None) => Ok(penalty),
+        (Some(penalty), None) => Ok(Penalty::Stiffness(penalty)),
         (None, Some(tolerance)) => {
             let Body::Layer(layer) = body else {
-                return Err(section.error("tolerance", "is for a [layer]; give penalty, in Pa/m"));
+                return Ok(Penalty::Tolerance(tolerance));
             };
             match penalty_for(tolerance, layer, materials) {
-                penalty if penalty.is_finite() && penalty > 0.0 => Ok(penalty),
+                penalty if penalty.is_finite() && penalty > 0.0 => Ok(Penalty::Stiffness(penalty)),
                 penalty => {
                     Err(section.error("tolerance", format!("gives a penalty of {penalty:?} Pa/m; give another")))
                 }
@@ -149,14 +151,31 @@ fn friction(section: &Section) -> Result<Friction> {
     })
 }
 
-fn solver(section: Option<&Section>) -> Result<Solver> {
+/// What a scene leaves to a preset.
+#[derive(Clone, Copy)]
+struct Preset {
+    /// The tolerance of phases that give neither steps nor a tolerance.
+    steps: f64,
+    /// The tolerance of Newton's method.
+    newton: f64,
+}
+
+fn preset(solver: &Section) -> Result<Option<Preset>> {
+    const PRESETS: [(&str, Preset); 3] = [
+        ("fast", Preset { steps: 1e-2, newton: 1e-6 }),
+        ("balanced", Preset { steps: 1e-3, newton: 1e-8 }),
+        ("reference", Preset { steps: 1e-4, newton: 1e-10 }),
+    ];
+    solver.optional_choice("preset", &PRESETS, &[])
+}
+
+fn solver(section: Option<&Section>, preset: Option<Preset>) -> Result<Solver> {
     const STRATEGIES: [(&str, Strategy); 3] =
         [("auto", Strategy::Auto), ("monolithic", Strategy::Monolithic), ("condensed", Strategy::Condensed)];
 
-    let default = Solver { strategy: Strategy::Auto, tolerance: 1e-8 };
+    let default = Solver { strategy: Strategy::Auto, tolerance: preset.map_or(1e-8, |preset| preset.newton) };
     let Some(section) = section else { return Ok(default) };
-    section.later(&[("preset", "give tolerance")])?;
-    section.only(&["strategy", "tolerance"])?;
+    section.only(&["strategy", "tolerance", "preset"])?;
     Ok(Solver {
         strategy: section.optional_choice("strategy", &STRATEGIES, &[])?.unwrap_or(default.strategy),
         tolerance: section.optional_number("tolerance", TOLERANCE)?.unwrap_or(default.tolerance),
@@ -166,14 +185,15 @@ fn solver(section: Option<&Section>) -> Result<Solver> {
 fn output(section: Option<&Section>) -> Result<Output> {
     const STEPS: &str = "a whole number of steps, at least 0";
 
-    let default = Output { interface_every: 1, bulk_at: Vec::new(), checkpoint_every: 0 };
+    let default = Output { interface_every: 1, bulk_at: Vec::new(), checkpoint_every: 0, energy: true };
     let Some(section) = section else { return Ok(default) };
-    section.only(&["interface_every", "bulk_at", "checkpoint_every"])?;
+    section.only(&["interface_every", "bulk_at", "checkpoint_every", "energy"])?;
     let count = |key: &str| section.optional_count(key, STEPS, 0..=usize::MAX);
     Ok(Output {
         interface_every: count("interface_every")?.unwrap_or(default.interface_every),
         bulk_at: bulk_at(section)?,
         checkpoint_every: count("checkpoint_every")?.unwrap_or(default.checkpoint_every),
+        energy: section.optional_flag("energy")?.unwrap_or(default.energy),
     })
 }
 

@@ -4,7 +4,7 @@ use toml::{Table, Value};
 
 use super::Subject;
 use crate::error::{Error, Result};
-use crate::scene::{self, Quadrature, Scene, Stepping};
+use crate::scene::{self, Penalty, Quadrature, Scene, Stepping};
 
 /// Settings of one kind, coarse to fine.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +40,7 @@ pub fn default(subject: &Subject, scene: &Scene) -> Result<Vec<Ladder>> {
         cells(scene),
         Some(steps(scene)),
         penalty(subject, scene, &table),
-        regularisation(scene, &table),
+        regularisation(scene),
         arms(&table),
         memory(scene),
         Some(quadrature(scene)),
@@ -91,21 +91,25 @@ fn addressed(index: usize, name: &str) -> String {
     if plain { name.to_owned() } else { index.to_string() }
 }
 
+/// By the key that the file gives; none where that is overridden as well.
 fn penalty(subject: &Subject, scene: &Scene, table: &Table) -> Option<Ladder> {
-    let set = |key: &str| subject.source.overrides.iter().any(|typed| typed.starts_with(&format!("{key}=")));
-    let tolerance = scene::get(table, "contact.tolerance").and_then(Value::as_float);
-    let rung = |factor: f64| match tolerance {
-        Some(tolerance) if !set("contact.tolerance") => one("contact.tolerance", format!("{:e}", tolerance / factor)),
-        _ => one("contact.penalty", format!("{:e}", scene.contact.penalty * factor)),
+    const TOLERANCE: &str = "contact.tolerance";
+    let overridden = subject.source.overrides.iter().any(|typed| typed.starts_with(TOLERANCE));
+    let rung = |factor: f64| match (scene::get(table, TOLERANCE).and_then(Value::as_float), scene.contact.penalty) {
+        _ if overridden => None,
+        (Some(tolerance), _) => Some(one(TOLERANCE, format!("{:e}", tolerance / factor))),
+        (None, Penalty::Stiffness(penalty)) => Some(one("contact.penalty", format!("{:e}", penalty * factor))),
+        (None, Penalty::Tolerance(_)) => None,
     };
-    let given = tolerance.is_none() || !set("contact.tolerance");
-    given.then(|| Ladder { name: "penalty".into(), rungs: DECADES.into_iter().map(rung).collect(), ratio: Some(10.0) })
+    let rungs = DECADES.into_iter().map(rung).collect::<Option<_>>()?;
+    Some(Ladder { name: "penalty".into(), rungs, ratio: Some(10.0) })
 }
 
-fn regularisation(scene: &Scene, table: &Table) -> Option<Ladder> {
+/// Of whatever law has one.
+fn regularisation(scene: &Scene) -> Option<Ladder> {
     const KEY: &str = "friction.regularisation";
-    scene.friction.as_ref()?;
-    let value = scene::get(table, KEY)?.as_float()?;
+    let table: Table = scene.to_toml().parse().ok()?;
+    let value = scene::get(&table, KEY)?.as_float()?;
     let rungs = DECADES.into_iter().map(|factor| one(KEY, format!("{:e}", value / factor))).collect();
     Some(Ladder { name: "regularisation".into(), rungs, ratio: Some(10.0) })
 }

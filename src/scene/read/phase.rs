@@ -1,11 +1,12 @@
 //! The `[[phase]]` tables: the loading history.
 
+use super::Preset;
 use crate::error::Result;
 use crate::scene::keys::{Quantity, Section};
 use crate::scene::{Motion, Phase, Stepping};
 
-/// All phases, in order; at least one.
-pub(super) fn read_all(root: &Section) -> Result<Vec<Phase>> {
+/// All phases, in order; at least one. Those that say nothing of their steps have the tolerance of the preset.
+pub(super) fn read_all(root: &Section, preset: Option<Preset>) -> Result<Vec<Phase>> {
     let sections = root.sections("phase", "an array of tables, [[phase]]")?;
     if sections.is_empty() {
         let wrong = if root.has("phase") { "empty" } else { "missing" };
@@ -14,7 +15,7 @@ pub(super) fn read_all(root: &Section) -> Result<Vec<Phase>> {
     let mut phases: Vec<Phase> = Vec::new();
     for (index, section) in sections.into_iter().enumerate() {
         let name = name(&section, index, &phases)?;
-        phases.push(phase(&section.called(format!("phase.{name}")), name)?);
+        phases.push(phase(&section.called(format!("phase.{name}")), name, preset)?);
     }
     Ok(phases)
 }
@@ -35,7 +36,7 @@ fn name(section: &Section, index: usize, before: &[Phase]) -> Result<String> {
     }
 }
 
-fn phase(section: &Section, name: String) -> Result<Phase> {
+fn phase(section: &Section, name: String, preset: Option<Preset>) -> Result<Phase> {
     const APPROACH: Quantity = Quantity::any("a normal approach in m");
 
     section.later(&[("temperature", super::NO_TEMPERATURE)])?;
@@ -44,13 +45,13 @@ fn phase(section: &Section, name: String) -> Result<Phase> {
     Ok(Phase {
         name,
         duration: duration(section, motion)?,
-        stepping: stepping(section)?,
+        stepping: stepping(section, preset)?,
         approach: section.optional_number("approach", APPROACH)?,
         motion,
     })
 }
 
-fn stepping(section: &Section) -> Result<Stepping> {
+fn stepping(section: &Section, preset: Option<Preset>) -> Result<Stepping> {
     const STEPS: &str = "a whole number of steps, at least 1";
 
     let steps = section.optional_count("steps", STEPS, super::COUNT)?;
@@ -59,7 +60,10 @@ fn stepping(section: &Section) -> Result<Stepping> {
         (Some(_), Some(_)) => Err(section.error("tolerance", "give steps or tolerance, not both")),
         (Some(steps), None) => Ok(Stepping::Steps(steps)),
         (None, Some(tolerance)) => Ok(Stepping::Tolerance(tolerance)),
-        (None, None) => Err(section.missing("steps", &format!("{STEPS}, or a tolerance"))),
+        (None, None) => {
+            let missing = || section.missing("steps", &format!("{STEPS}, or a tolerance"));
+            preset.map(|preset| Stepping::Tolerance(preset.steps)).ok_or_else(missing)
+        }
     }
 }
 
