@@ -22,8 +22,8 @@ use crate::rheology::Memory;
 use crate::rheology::prony::{Prony, common_times};
 use crate::scene::{self, PoissonRule, Scene, When};
 use crate::solve::{
-    Backing, Body, Compliance, Condensed, Following, Interior, LARGE_FACE, Limits, Moduli, Monolithic, Relaxation,
-    Remembering, Source, TransientProblem,
+    Backing, Body, Compliance, Condensed, Following, Inside, Interior, LARGE_FACE, Layered, Limits, Moduli, Monolithic,
+    PeriodicColumn, Relaxation, Relaxations, Remembering, Sparse, TransientProblem,
 };
 
 pub use profile::{Finest, Shape, elevations, shape};
@@ -118,17 +118,21 @@ fn following(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: In
 }
 
 fn remembering(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
-    let moduli = moduli(&scene.material);
-    let whole = if comm.rank() == 0 { whole_body(scene, &mesh, moduli).map(Some) } else { Ok(None) };
-    let source = match scene.layer.sides {
-        scene::Sides::Periodic => {
-            Source::Periodic { cells: column(scene, &mesh), columns: scene.layer.cells[0], moduli }
-        }
-        _ => Source::Schur,
-    };
-    let backing = Remembering::new(comm, agree(comm, whole)?, source)?;
+    let inside = if comm.rank() == 0 { inside(scene, &mesh).map(Some) } else { Ok(None) };
+    let backing = Remembering::new(comm, agree(comm, inside)?);
     let u = face_vector(comm, &mesh)?;
     condensed(comm, scene, mesh, u, (interface, backing))
+}
+
+/// The whole body with its memory, on this rank alone.
+fn inside(scene: &Scene, mesh: &Mesh) -> Result<Box<dyn Inside>> {
+    let moduli = moduli(&scene.material);
+    if let Some(column) = periodic_column(scene, mesh) {
+        return Ok(Box::new(Layered::new(mesh.clone(), &column, relaxations(&scene.material))));
+    }
+    let body = Body::new(SimpleCommunicator::self_comm(), mesh.clone(), moduli)?;
+    let bulk = bulk(scene, &body, moduli, &body.vector()?)?;
+    Ok(Box::new(Sparse::new(bulk, body)?))
 }
 
 fn condensed<B: Backing + 'static>(
@@ -152,23 +156,22 @@ fn face_vector(comm: &SimpleCommunicator, mesh: &Mesh) -> Result<Vector> {
 
 /// The compliance of the face, by this rank alone.
 fn compliance(scene: &Scene, mesh: &Mesh, moduli: Moduli) -> Result<Compliance> {
-    if scene.layer.sides == scene::Sides::Periodic {
-        let cells: Vec<_> = column(scene, mesh).iter().map(|split| moduli.stiffness(split)).collect();
-        return Ok(Compliance::of_periodic_columns(&cells, scene.layer.cells[0]));
+    match periodic_column(scene, mesh) {
+        Some(column) => column.compliance(),
+        None => {
+            Compliance::by_schur_complement(&Body::new(SimpleCommunicator::self_comm(), mesh.clone(), moduli)?, moduli)
+        }
     }
-    Compliance::by_schur_complement(&Body::new(SimpleCommunicator::self_comm(), mesh.clone(), moduli)?, moduli)
 }
 
-/// The whole body with its memory, on this rank alone.
-fn whole_body(scene: &Scene, mesh: &Mesh, moduli: Moduli) -> Result<(Bulk, Body)> {
-    let body = Body::new(SimpleCommunicator::self_comm(), mesh.clone(), moduli)?;
-    let bulk = bulk(scene, &body, moduli, &body.vector()?)?;
-    Ok((bulk, body))
-}
-
-/// The cells of one column of the layer, from the top down.
-fn column(scene: &Scene, mesh: &Mesh) -> Vec<quad4::Split> {
-    (0..scene.layer.cells[1]).map(|cell| quad4::stiffness(&mesh.corners(cell))).collect()
+/// One column of a periodic layer; none for any other body.
+fn periodic_column(scene: &Scene, mesh: &Mesh) -> Option<PeriodicColumn> {
+    let [columns, rows] = scene.layer.cells;
+    (scene.layer.sides == scene::Sides::Periodic).then(|| PeriodicColumn {
+        cells: (0..rows).map(|cell| quad4::stiffness(&mesh.corners(cell))).collect(),
+        moduli: moduli(&scene.material),
+        columns,
+    })
 }
 
 fn settings(linear: Linear) -> Settings {
@@ -194,21 +197,25 @@ fn moduli(material: &scene::Material) -> Moduli {
 
 /// One part where shear and bulk modulus relax together (or not at all), two where each goes its own way.
 fn bulk(scene: &Scene, body: &Body, moduli: Moduli, layout: &Vector) -> Result<Bulk> {
-    let material = &scene.material;
-    let (shear, bulk) = (material.shear_series(), material.bulk_series());
-    let times = common_times(&[&shear, &bulk]);
-    let part = |moduli, diagonal, prony: &Prony| {
-        Ok(Part { stiffness: body.stiffness(moduli, diagonal)?, series: series(prony, &times) })
+    let Relaxations { times, rule, series } = relaxations(&scene.material);
+    let part = |moduli, diagonal, series: &Option<Series>| {
+        Ok(Part { stiffness: body.stiffness(moduli, diagonal)?, series: series.clone() })
     };
-    let parts = if shear == bulk {
-        vec![part(moduli, moduli.shear, &shear)?]
-    } else {
-        vec![
-            part(Moduli { bulk: 0.0, ..moduli }, moduli.shear, &shear)?,
-            part(Moduli { shear: 0.0, ..moduli }, 0.0, &bulk)?,
-        ]
+    let parts = match &series[..] {
+        [shear, bulk] if shear != bulk => vec![
+            part(Moduli { bulk: 0.0, ..moduli }, moduli.shear, shear)?,
+            part(Moduli { shear: 0.0, ..moduli }, 0.0, bulk)?,
+        ],
+        _ => vec![part(moduli, moduli.shear, &series[0])?],
     };
-    Bulk::new(parts, times, memory(material), layout)
+    Bulk::new(parts, times, rule, layout)
+}
+
+/// How the shear and the bulk modulus relax.
+fn relaxations(material: &scene::Material) -> Relaxations {
+    let pronys = [material.shear_series(), material.bulk_series()];
+    let times = common_times(&[&pronys[0], &pronys[1]]);
+    Relaxations { rule: memory(material), series: pronys.iter().map(|prony| series(prony, &times)).collect(), times }
 }
 
 /// The Prony series of the shear modulus and its relaxation times, s; no series for an elastic material.

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::material;
 use crate::composition::{self, Form};
 use crate::output::{HistoryRow, Status};
-use crate::petsc;
+use crate::petsc::{self, LinearWork};
 use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
 use crate::solve::Counts;
 
@@ -112,6 +112,11 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
         0 => String::new(),
         pieces => format!(", {pieces} of them pieces of steps that were cut"),
     };
+    let LinearWork { factorisations, iterations, .. } = counts.linear;
+    let sparse = match factorisations {
+        0 => String::new(),
+        _ => format!(", {factorisations} sparse factorisations, {iterations} Krylov iterations with them"),
+    };
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{:<15}{} at t = {:.6} s", "status:", status.as_str(), last.time);
@@ -128,7 +133,8 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
         "{:<15}{:.4} of the face, {:.4} of it sticking; penetration {:.1e} m",
         "final contact:", last.contact_fraction, last.stick_fraction, last.max_penetration
     );
-    let _ = writeln!(text, "{:<15}{} steps, {} Newton iterations{pieces}", "work:", counts.steps, counts.newton);
+    let _ =
+        writeln!(text, "{:<15}{} steps{pieces}, {} Newton iterations{sparse}", "work:", counts.steps, counts.newton);
     let _ = writeln!(
         text,
         "{:<15}{} on {ranks} rank(s): set-up {}, assembly {},\n{:<15}linear solver {}, output {}",
@@ -149,7 +155,8 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
 fn strategy(scene: &Scene) -> String {
     let asked = if scene.solver.strategy == Strategy::Auto { "auto picked " } else { "" };
     match composition::form(scene) {
-        Form::Monolithic => "monolithic: all unknowns in one sparse system, factorised at each Newton iteration".into(),
+        Form::Monolithic => "monolithic: all unknowns in one sparse system; a factorisation serves as preconditioner for the next steps too"
+            .into(),
         Form::Following => format!(
             "{asked}condensed: shear and bulk modulus keep their ratio, so that the interior follows the contact\n\
              {:15}face; Newton runs on the nodes in contact",

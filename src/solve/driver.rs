@@ -4,10 +4,10 @@ use std::time::{Duration, Instant};
 
 use mpi::topology::SimpleCommunicator;
 
-use super::{Observer, Report, TransientProblem};
+use super::{Observer, Options, Report, TransientProblem};
 use crate::error::{Error, Result};
 use crate::loading::Phase;
-use crate::petsc::{Accepted, Implicit, Integrator, Matrix, Next, Settings, Step, Vector, Verdict};
+use crate::petsc::{Accepted, Implicit, Integrator, LinearWork, Matrix, Next, Settings, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 
 /// What the driver may do to get through a step.
@@ -84,6 +84,10 @@ pub struct Counts {
     pub pieces: usize,
     /// Newton iterations, those of rejected attempts included.
     pub newton: usize,
+    /// What PETSc's linear solver did.
+    pub linear: LinearWork,
+    /// What the parts that the scene opts into took.
+    pub options: Options,
     /// Residuals and tangents.
     pub assembly: Duration,
     /// What the observer took.
@@ -144,7 +148,7 @@ impl<'a> Driver<'a> {
 
     /// What the run took so far.
     pub fn counts(&self) -> Counts {
-        self.counts
+        Counts { options: self.problem.options(), ..self.counts }
     }
 
     /// How often the next step may be cut.
@@ -220,6 +224,7 @@ impl Implicit for Driver<'_> {
         self.counts.steps += 1;
         self.counts.pieces += usize::from(!planned);
         self.counts.newton += accepted.newton;
+        self.counts.linear += accepted.linear;
         let report = Report {
             phase,
             time: self.now,

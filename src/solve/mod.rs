@@ -13,7 +13,10 @@ use crate::petsc::{Matrix, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 
 pub use body::{Body, Moduli};
-pub use condensed::{Backing, Compliance, Condensed, Following, Interior, LARGE_FACE, Relaxation, Remembering, Source};
+pub use condensed::{
+    Backing, Compliance, Condensed, Following, Inside, Interior, LARGE_FACE, Layered, PeriodicColumn, Relaxation,
+    Relaxations, Remembering, Sparse,
+};
 pub use driver::{Counts, Driver, Limits, Position};
 pub use monolithic::Monolithic;
 
@@ -51,6 +54,20 @@ pub trait TransientProblem {
     fn contact(&mut self) -> Result<Contact<'_>>;
     /// The bulk fields at the accepted state `u`.
     fn bulk_fields(&mut self, u: &Vector) -> Result<BulkFields>;
+    /// What the parts that a scene opts into took so far.
+    fn options(&self) -> Options;
+}
+
+/// What the parts of the model that a scene opts into took on this rank: all zero for an elastic, frictionless scene
+/// without bulk output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options {
+    /// Fields that carry memory.
+    pub memory_fields: usize,
+    /// Evaluations of the tangential law.
+    pub tangential_laws: usize,
+    /// How often the fields behind the face were recovered.
+    pub recoveries: usize,
 }
 
 /// The contact face at an accepted state.

@@ -4,7 +4,7 @@ use nalgebra::Matrix2;
 
 use super::body::Body;
 use super::face::ContactFace;
-use super::{BulkFields, Contact, TransientProblem};
+use super::{BulkFields, Contact, Options, TransientProblem};
 use crate::bulk::Bulk;
 use crate::error::Result;
 use crate::interface::Interface;
@@ -21,6 +21,8 @@ pub struct Monolithic {
     rows: Vec<(i32, Option<usize>)>,
     base: Base,
     tolerance: f64,
+    /// How often bulk fields were asked for.
+    recoveries: usize,
 }
 
 /// The bulk tangent's blocks under the interface's own, at one step length: what the interface's are added to.
@@ -48,6 +50,7 @@ impl Monolithic {
             rows,
             base: Base { dt: f64::NAN, diagonal: Vec::new(), coupling: Vec::new() },
             tolerance,
+            recoveries: 0,
         })
     }
 }
@@ -135,6 +138,7 @@ impl TransientProblem for Monolithic {
     }
 
     fn bulk_fields(&mut self, u: &Vector) -> Result<BulkFields> {
+        self.recoveries += 1;
         let Self { bulk, body, .. } = self;
         let mut effective = Vec::new();
         bulk.effective(u, |y| {
@@ -142,6 +146,14 @@ impl TransientProblem for Monolithic {
             Ok(())
         })?;
         body.fields(u, &effective)
+    }
+
+    fn options(&self) -> Options {
+        Options {
+            memory_fields: self.bulk.memory_vectors(),
+            tangential_laws: self.face.interface().tangential_laws(),
+            recoveries: self.recoveries,
+        }
     }
 }
 

@@ -70,6 +70,10 @@ impl Backing for Following {
         false
     }
 
+    fn memory_fields(&self) -> usize {
+        self.relaxation.as_ref().map_or(0, |relaxation| relaxation.arms.len())
+    }
+
     fn commit(&mut self, step: Step, u: &Vector, _residual: &Residual) -> Result<()> {
         self.relaxation.as_mut().map_or(Ok(()), |relaxation| relaxation.arms.commit(step, u))
     }

@@ -14,11 +14,14 @@
 mod compliance;
 mod following;
 mod interior;
+mod layered;
 mod newton;
 mod remembering;
+mod sparse;
+mod waves;
 
 use super::face::ContactFace;
-use super::{BulkFields, Contact, TransientProblem};
+use super::{BulkFields, Contact, Options, TransientProblem};
 use crate::error::Result;
 use crate::interface::{Interface, Residual};
 use crate::loading::Phase;
@@ -28,7 +31,9 @@ use crate::snapshot::{NaturalOrder, Snapshot};
 pub use compliance::Compliance;
 pub use following::{Following, Relaxation};
 pub use interior::Interior;
-pub use remembering::{Remembering, Source};
+pub use layered::{Layered, PeriodicColumn, Relaxations};
+pub use remembering::{Inside, Remembering};
+pub use sparse::Sparse;
 
 use newton::{Factor, SparseColumns};
 
@@ -46,6 +51,8 @@ pub trait Backing {
     fn softness(&self) -> f64;
     /// Whether [`Self::commit`] needs the contact forces, and [`Self::free`] no rate.
     fn takes_forces(&self) -> bool;
+    /// How many fields carry memory, on this rank.
+    fn memory_fields(&self) -> usize;
     /// Takes the memory to the end of an accepted step that ends at `u` under the contact forces -`residual`.
     fn commit(&mut self, step: Step, u: &Vector, residual: &Residual) -> Result<()>;
     /// Adds the memory to a snapshot; `order` is that of the face.
@@ -71,6 +78,8 @@ pub struct Condensed<B> {
     used: usize,
     /// Whether a factor may serve for later tangents.
     reuse: bool,
+    /// How often bulk fields were asked for.
+    recoveries: usize,
 }
 
 /// Faces with more components than this are solved by GMRES with an older factor, so that a step costs the square of
@@ -93,6 +102,7 @@ impl<B: Backing> Condensed<B> {
             factored_for: Step { t: 0.0, dt: 0.0 },
             used: 0,
             reuse: 2 * held.len() > LARGE_FACE,
+            recoveries: 0,
         })
     }
 }
@@ -103,7 +113,7 @@ impl<B: Backing> Condensed<B> {
         let mut values = f.view_mut()?;
         if let Some(compliance) = self.backing.compliance() {
             let forces = self.face.residual.iter().enumerate().flat_map(|(i, r)| [(2 * i, r.x), (2 * i + 1, r.y)]);
-            compliance.add_displacements(forces, &mut values);
+            compliance.add_displacements(forces, &mut values)?;
         }
         Ok(())
     }
@@ -163,7 +173,7 @@ impl<B: Backing> TransientProblem for Condensed<B> {
         product.scale(self.backing.secant())?;
         let (v, mut product) = (v.view()?, product.view_mut()?);
         if let Some(compliance) = self.backing.compliance() {
-            compliance.add_displacements(self.columns.multiply(|place| v[place]), &mut product);
+            compliance.add_displacements(self.columns.multiply(|place| v[place]), &mut product)?;
         }
         Ok(())
     }
@@ -240,6 +250,15 @@ impl<B: Backing> TransientProblem for Condensed<B> {
     }
 
     fn bulk_fields(&mut self, u: &Vector) -> Result<BulkFields> {
+        self.recoveries += 1;
         self.backing.bulk_fields(&mut self.face, u)
+    }
+
+    fn options(&self) -> Options {
+        Options {
+            memory_fields: self.backing.memory_fields(),
+            tangential_laws: self.face.interface().tangential_laws(),
+            recoveries: self.recoveries,
+        }
     }
 }

@@ -70,10 +70,7 @@ impl Factor {
         for (j, entries) in columns.entries.iter().enumerate() {
             let target = &mut matrix[j * order..][..order];
             for (row, t) in entries {
-                let source = compliance.column(*row);
-                for (value, &place) in target.iter_mut().zip(&columns.places) {
-                    *value += source[place] * t;
-                }
+                compliance.add_column(*row, *t, &columns.places, target);
             }
             target[j] += secant;
         }
@@ -117,7 +114,7 @@ impl Factor {
         }
         let forces: Vec<(usize, f64)> = self.columns.multiply(|place| x[place]).collect();
         x.copy_from_slice(b);
-        compliance.add_displacements(forces.into_iter().map(|(row, force)| (row, -force)), x);
+        compliance.add_displacements(forces.into_iter().map(|(row, force)| (row, -force)), x)?;
         x.iter_mut().for_each(|value| *value /= self.secant);
         Ok(())
     }
