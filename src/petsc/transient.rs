@@ -1,6 +1,5 @@
 //! PETSc TS (backward Euler) and SNES (Newton with line search) around a problem written in Rust.
 
-use std::ops::AddAssign;
 use std::os::raw::c_void;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr::null_mut;
@@ -32,27 +31,6 @@ pub struct Accepted {
     pub newton: usize,
     /// How often it was cut before it was accepted.
     pub cuts: usize,
-    /// What PETSc's linear solver did for it, rejected attempts included.
-    pub linear: LinearWork,
-}
-
-/// What PETSc's linear solver did.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct LinearWork {
-    /// Sparse factorisations; none where the problem solves by itself or a preconditioner was chosen by an option.
-    pub factorisations: usize,
-    /// Of these, symmetric ones.
-    pub symmetric: usize,
-    /// Krylov iterations.
-    pub iterations: usize,
-}
-
-impl AddAssign for LinearWork {
-    fn add_assign(&mut self, more: Self) {
-        self.factorisations += more.factorisations;
-        self.symmetric += more.symmetric;
-        self.iterations += more.iterations;
-    }
 }
 
 /// What follows an accepted step.
@@ -114,10 +92,9 @@ pub trait Implicit {
 /// How the linear systems are solved, unless PETSc options say otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Linear {
-    /// The tangent is symmetric positive definite: conjugate gradients with a Cholesky factorisation by MUMPS, of this
-    /// or an earlier tangent, as preconditioner.
+    /// The tangent is symmetric positive definite: Cholesky factorisation by MUMPS.
     Cholesky,
-    /// GMRES with an LU factorisation by MUMPS, of this or an earlier tangent, as preconditioner.
+    /// LU factorisation by MUMPS.
     Lu,
     /// By the problem itself, exactly.
     Own,
@@ -136,31 +113,11 @@ pub struct Settings {
     pub max_cuts: usize,
 }
 
-/// More Krylov iterations than this in one solve, and the next tangent is factorised: at 512 x 512 cells a
-/// factorisation takes the time of about ten iterations.
-const STALE_AFTER: i32 = 8;
-
-/// What a linear solve must reduce its residual to at first; later solves follow Eisenstat and Walker (SIAM J. Sci.
-/// Comput. 17 (1996) 16), their second choice, so that Newton's method converges as it would with exact solves.
-const FIRST_REDUCTION: f64 = 1e-2;
-
 /// A TS with its SNES, KSP and PC.
 pub struct Integrator {
     ts: ffi::TS,
-    /// What the preconditioner factorises, and whether the factor may serve for later tangents.
-    factor: Option<Factor>,
     /// The problem multiplies and solves by its own tangent.
     own: bool,
-}
-
-/// A sparse factorisation of the tangent.
-#[derive(Debug, Clone, Copy)]
-struct Factor {
-    symmetric: bool,
-    /// Only as a preconditioner: Krylov iterations make up for what has changed since.
-    lasts: bool,
-    /// The step length that it was made for, s; not a number before the first.
-    dt: f64,
 }
 
 /// What the callbacks reach through PETSc's context pointer.
@@ -171,10 +128,6 @@ struct Context<'a, P> {
     newton: usize,
     /// Steps cut since TS began.
     cuts: i32,
-    factor: Option<Factor>,
-    linear: LinearWork,
-    /// Krylov iterations since TS began.
-    iterations: i32,
     error: Option<Error>,
 }
 
@@ -187,7 +140,7 @@ impl Integrator {
         // SAFETY: places for the handles; those got from TS stay TS's own.
         unsafe {
             check(ffi::TSCreate(comm.as_communicator().as_raw(), &mut ts))?;
-            let mut integrator = Self { ts, own, factor: None };
+            let integrator = Self { ts, own };
             check(ffi::TSSetProblemType(ts, ffi::TSProblemType_TS_NONLINEAR))?;
             check(ffi::TSSetType(ts, c"beuler".as_ptr()))?;
             check(ffi::TSSetExactFinalTime(ts, ffi::TSExactFinalTimeOption_TS_EXACTFINALTIME_STEPOVER))?;
@@ -209,8 +162,8 @@ impl Integrator {
             check(ffi::SNESGetKSP(snes, &mut ksp))?;
             check(ffi::KSPGetPC(ksp, &mut pc))?;
             let (method, preconditioner) = match settings.linear {
-                Linear::Cholesky => (c"cg", c"cholesky"),
-                Linear::Lu => (c"gmres", c"lu"),
+                Linear::Cholesky => (c"preonly", c"cholesky"),
+                Linear::Lu => (c"preonly", c"lu"),
                 Linear::Own => (c"preonly", c"shell"),
                 Linear::OwnIterative => (c"gmres", c"shell"),
             };
@@ -219,17 +172,8 @@ impl Integrator {
             check(ffi::PCSetType(pc, preconditioner.as_ptr()))?;
             if matches!(settings.linear, Linear::Cholesky | Linear::Lu) {
                 check(ffi::PCFactorSetMatSolverType(pc, c"mumps".as_ptr()))?;
-                let unchanged = -2.0;
-                let (first, rest) = (FIRST_REDUCTION, unchanged);
-                check(ffi::SNESKSPSetUseEW(snes, ffi::PetscBool_PETSC_TRUE))?;
-                check(ffi::SNESKSPSetParametersEW(snes, 2, first, first, rest, rest, rest, rest))?;
             }
             check(ffi::TSSetFromOptions(ts))?;
-            let [cholesky, lu] = [is_type(pc.cast(), c"cholesky")?, is_type(pc.cast(), c"lu")?];
-            if cholesky || lu {
-                let lasts = !is_type(ksp.cast(), c"preonly")?;
-                integrator.factor = Some(Factor { symmetric: cholesky, lasts, dt: f64::NAN });
-            }
             Ok(integrator)
         }
     }
@@ -246,17 +190,8 @@ impl Integrator {
         u: &mut Vector,
         (now, dt): (f64, f64),
     ) -> Result<()> {
-        let mut context = Context {
-            problem,
-            ts: self.ts,
-            step: Step { t: now + dt, dt },
-            newton: 0,
-            cuts: 0,
-            factor: self.factor,
-            linear: LinearWork::default(),
-            iterations: 0,
-            error: None,
-        };
+        let mut context =
+            Context { problem, ts: self.ts, step: Step { t: now + dt, dt }, newton: 0, cuts: 0, error: None };
         let pointer = (&raw mut context).cast::<c_void>();
         let (ts, mut snes, mut reason) = (self.ts, null_mut(), 0);
         // SAFETY: `context` outlives TSSolve, the only call that runs the callbacks; PETSc gives each callback the
@@ -309,40 +244,6 @@ impl Drop for Integrator {
     fn drop(&mut self) {
         // SAFETY: this handle owns the TS.
         unsafe { ffi::TSDestroy(&mut self.ts) };
-    }
-}
-
-/// Whether a PETSc object is of this type.
-///
-/// # Safety
-/// `object` is a live PETSc object.
-unsafe fn is_type(object: ffi::PetscObject, name: &std::ffi::CStr) -> Result<bool> {
-    let mut same = ffi::PetscBool_PETSC_FALSE;
-    // SAFETY: by the contract above, and a place for the answer.
-    unsafe { check(ffi::PetscObjectTypeCompare(object, name.as_ptr(), &mut same))? };
-    Ok(same == ffi::PetscBool_PETSC_TRUE)
-}
-
-impl<P> Context<'_, P> {
-    /// Has the tangent factorised that was just made for `step`, if the factor at hand no longer serves.
-    fn renew_factor(&mut self, step: Step) -> Result<()> {
-        let Some(factor) = &mut self.factor else { return Ok(()) };
-        let (mut snes, mut ksp, mut iterations) = (null_mut(), null_mut(), 0);
-        // SAFETY: a live TS, whose SNES and KSP these are, and a place for the number.
-        unsafe {
-            check(ffi::TSGetSNES(self.ts, &mut snes))?;
-            check(ffi::SNESGetKSP(snes, &mut ksp))?;
-            check(ffi::KSPGetIterationNumber(ksp, &mut iterations))?;
-            if factor.lasts && factor.dt == step.dt && iterations <= STALE_AFTER {
-                return Ok(());
-            }
-            // Now, and then never again by itself.
-            check(ffi::SNESSetLagPreconditioner(snes, -2))?;
-        }
-        factor.dt = step.dt;
-        self.linear.factorisations += 1;
-        self.linear.symmetric += usize::from(factor.symmetric);
-        Ok(())
     }
 }
 
@@ -415,8 +316,7 @@ unsafe extern "C" fn tangent<P: Implicit>(
         guarded::<P>(pointer, |context| {
             let step = attempted(ts, t)?;
             let mut matrix = Matrix::borrow(matrix);
-            context.problem.jacobian(step, &Vector::borrow(u), &Vector::borrow(rate), &mut matrix)?;
-            context.renew_factor(step)
+            context.problem.jacobian(step, &Vector::borrow(u), &Vector::borrow(rate), &mut matrix)
         })
     }
 }
@@ -493,12 +393,8 @@ unsafe extern "C" fn post_step<P: Implicit>(ts: ffi::TS) -> ffi::PetscErrorCode 
                 return Ok(());
             }
             check(ffi::TSGetStepRejections(ts, &mut cuts))?;
-            let mut iterations = 0;
-            check(ffi::TSGetKSPIterations(ts, &mut iterations))?;
-            context.linear.iterations = (iterations - std::mem::replace(&mut context.iterations, iterations)) as usize;
             let accepted = Accepted {
                 step: context.step,
-                linear: std::mem::take(&mut context.linear),
                 newton: std::mem::take(&mut context.newton),
                 cuts: (cuts - std::mem::replace(&mut context.cuts, cuts)) as usize,
             };
