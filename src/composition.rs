@@ -16,14 +16,14 @@ use crate::interface::{Interface, Laws};
 use crate::loading::{self, Motion, Phase};
 use crate::mesh::{Layer, Mesh, Sides};
 use crate::parallel::{agree, share_numbers};
-use crate::petsc::{Linear, Matrix, Settings, Vector};
+use crate::petsc::{Integrator, Linear, Matrix, Settings, Vector};
 use crate::profile::Profile;
 use crate::rheology::Memory;
 use crate::rheology::prony::{Prony, common_times};
 use crate::scene::{self, PoissonRule, Scene, When};
 use crate::solve::{
-    Backing, Body, Compliance, Condensed, Following, Inside, Interior, LARGE_FACE, Layered, Limits, Moduli, Monolithic,
-    PeriodicColumn, Relaxation, Relaxations, Remembering, Sparse, TransientProblem,
+    Backing, Body, Compliance, Condensed, Following, Inside, Interior, LARGE_FACE, Layered, MAX_NEWTON, Moduli,
+    Monolithic, PeriodicColumn, Relaxation, Relaxations, Remembering, Sparse, TransientProblem,
 };
 
 pub use profile::{Finest, Shape, elevations, shape};
@@ -38,8 +38,8 @@ pub struct Problem {
     pub u: Vector,
     /// The loading history.
     pub phases: Vec<Phase>,
-    /// How TS and SNES are set.
-    pub settings: Settings,
+    /// TS and SNES, ready to solve it.
+    pub integrator: Integrator,
     /// The body's mesh, for output.
     pub mesh: Mesh,
 }
@@ -92,12 +92,12 @@ fn monolithic(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: I
     let bulk = bulk(scene, &body, moduli, &u)?;
     let mut tangent = bulk.new_tangent()?;
     tangent.set_near_null_space(&mut body.coordinates()?)?;
-    let linear = if interface.has_friction() { Linear::Lu } else { Linear::Cholesky };
-    if linear == Linear::Cholesky {
+    if !interface.has_friction() {
         tangent.declare_positive_definite()?;
     }
+    let integrator = integrator(comm, Linear::Preconditioned, &mut tangent)?;
     let strategy = Box::new(Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?);
-    Ok(Problem { strategy, tangent, u, phases: phases(scene), settings: settings(linear), mesh })
+    Ok(Problem { strategy, tangent, u, phases: phases(scene), integrator, mesh })
 }
 
 fn following(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
@@ -144,9 +144,10 @@ fn condensed<B: Backing + 'static>(
 ) -> Result<Problem> {
     let held: Vec<[bool; 2]> = mesh.face.unknown.iter().map(|&unknown| mesh.held[unknown as usize]).collect();
     let linear = if 2 * held.len() > LARGE_FACE { Linear::OwnIterative } else { Linear::Own };
-    let tangent = Matrix::shell(comm, u.local_len())?;
+    let mut tangent = Matrix::shell(comm, u.local_len())?;
+    let integrator = integrator(comm, linear, &mut tangent)?;
     let strategy = Box::new(Condensed::new(interface, backing, &u, &held, scene.solver.tolerance)?);
-    Ok(Problem { strategy, tangent, u, phases: phases(scene), settings: settings(linear), mesh })
+    Ok(Problem { strategy, tangent, u, phases: phases(scene), integrator, mesh })
 }
 
 /// x, z of each face node, on rank 0.
@@ -174,9 +175,8 @@ fn periodic_column(scene: &Scene, mesh: &Mesh) -> Option<PeriodicColumn> {
     })
 }
 
-fn settings(linear: Linear) -> Settings {
-    let Limits { max_newton, max_cuts } = Limits::default();
-    Settings { linear, max_newton, max_cuts }
+fn integrator(comm: &SimpleCommunicator, linear: Linear, tangent: &mut Matrix) -> Result<Integrator> {
+    Integrator::new(comm, Settings { linear, max_newton: MAX_NEWTON }, tangent)
 }
 
 fn layer(layer: &scene::Layer) -> Layer {

@@ -6,9 +6,9 @@ use std::time::Duration;
 use super::material;
 use crate::composition::{self, Form};
 use crate::output::{HistoryRow, Status};
-use crate::petsc::{self, LinearWork};
+use crate::petsc;
 use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
-use crate::solve::Counts;
+use crate::solve::{Counts, Work};
 
 /// What is modelled and what is not: (modelled, not modelled).
 pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
@@ -112,10 +112,11 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
         0 => String::new(),
         pieces => format!(", {pieces} of them pieces of steps that were cut"),
     };
-    let LinearWork { factorisations, iterations, .. } = counts.linear;
-    let sparse = match factorisations {
-        0 => String::new(),
-        _ => format!(", {factorisations} sparse factorisations, {iterations} Krylov iterations with them"),
+    let sparse = match counts.work {
+        Work { factorisations: 0, .. } => String::new(),
+        Work { factorisations, solves, .. } => {
+            format!("; {factorisations} sparse factorisation(s), {solves} solves with them")
+        }
     };
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -155,8 +156,9 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
 fn strategy(scene: &Scene) -> String {
     let asked = if scene.solver.strategy == Strategy::Auto { "auto picked " } else { "" };
     match composition::form(scene) {
-        Form::Monolithic => "monolithic: all unknowns in one sparse system; a factorisation serves as preconditioner for the next steps too"
-            .into(),
+        Form::Monolithic => {
+            "monolithic: all unknowns in one sparse system; the bulk is factorised once per step length".into()
+        }
         Form::Following => format!(
             "{asked}condensed: shear and bulk modulus keep their ratio, so that the interior follows the contact\n\
              {:15}face; Newton runs on the nodes in contact",

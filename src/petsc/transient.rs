@@ -2,7 +2,7 @@
 
 use std::os::raw::c_void;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::ptr::null_mut;
+use std::ptr::{null, null_mut};
 
 use mpi::topology::AsCommunicator;
 use mpi::traits::AsRaw;
@@ -36,18 +36,21 @@ pub struct Accepted {
 /// What follows an accepted step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Next {
-    /// A step of length `dt` from the time `now`: the exact value of the accepted step's end, which sums of dt miss by
-    /// round-off.
-    Step {
-        /// s
-        now: f64,
-        /// s
-        dt: f64,
-        /// How often it may be cut (by four each time) before the solve fails.
-        max_cuts: usize,
-    },
+    /// Another step.
+    Step(Attempt),
     /// The end.
     Stop,
+}
+
+/// A step to take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Attempt {
+    /// Its beginning, s: the exact value of the last step's end, which sums of dt miss by round-off.
+    pub now: f64,
+    /// Its length, s.
+    pub dt: f64,
+    /// How often it may be cut (by four each time) before the solve fails.
+    pub max_cuts: usize,
 }
 
 /// What the convergence test says of a Newton iterate.
@@ -75,7 +78,7 @@ pub trait Implicit {
     fn multiply(&mut self, _v: &Vector, _product: &mut Vector) -> Result<()> {
         Err(Error::Internal("the tangent of this problem is a matrix".into()))
     }
-    /// x = tangent^-1 b, or nearly so, with the last tangent; for [`Linear::Own`].
+    /// x = tangent^-1 b, or nearly so, with the last tangent.
     fn solve(&mut self, _b: &Vector, _x: &mut Vector) -> Result<()> {
         Err(Error::Internal("the tangent of this problem is a matrix".into()))
     }
@@ -92,13 +95,11 @@ pub trait Implicit {
 /// How the linear systems are solved, unless PETSc options say otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Linear {
-    /// The tangent is symmetric positive definite: Cholesky factorisation by MUMPS.
-    Cholesky,
-    /// LU factorisation by MUMPS.
-    Lu,
-    /// By the problem itself, exactly.
+    /// By FGMRES, with the problem's own solve as preconditioner; the tangent is a matrix.
+    Preconditioned,
+    /// By the problem itself, exactly; the tangent is a [`Matrix::shell`].
     Own,
-    /// By GMRES, with the problem's own solve as preconditioner.
+    /// By GMRES, with the problem's own solve as preconditioner; the tangent is a [`Matrix::shell`].
     OwnIterative,
 }
 
@@ -109,15 +110,13 @@ pub struct Settings {
     pub linear: Linear,
     /// Newton iterations per attempt before the step is cut.
     pub max_newton: usize,
-    /// How often the first step may be cut (by four each time) before the solve fails; see [`Next::Step`].
-    pub max_cuts: usize,
 }
 
 /// A TS with its SNES, KSP and PC.
 pub struct Integrator {
     ts: ffi::TS,
-    /// The problem multiplies and solves by its own tangent.
-    own: bool,
+    /// The tangent is a shell: the problem multiplies by it.
+    shell: bool,
 }
 
 /// What the callbacks reach through PETSc's context pointer.
@@ -132,22 +131,25 @@ struct Context<'a, P> {
 }
 
 impl Integrator {
-    /// Backward Euler with Newton's method and a direct solver (MUMPS), changed by whatever PETSc options are set.
-    pub fn new(comm: &impl AsCommunicator, settings: Settings) -> Result<Self> {
+    /// Backward Euler with Newton's method and the problem's own linear solver, changed by whatever PETSc options are set, for a
+    /// problem whose tangent is `jacobian`.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] when PETSc does not take the value of an option.
+    pub fn new(comm: &impl AsCommunicator, settings: Settings, jacobian: &mut Matrix) -> Result<Self> {
         let mut ts = null_mut();
-        let own = matches!(settings.linear, Linear::Own | Linear::OwnIterative);
+        let shell = matches!(settings.linear, Linear::Own | Linear::OwnIterative);
         let (mut snes, mut search, mut ksp, mut pc) = (null_mut(), null_mut(), null_mut(), null_mut());
         // SAFETY: places for the handles; those got from TS stay TS's own.
         unsafe {
             check(ffi::TSCreate(comm.as_communicator().as_raw(), &mut ts))?;
-            let integrator = Self { ts, own };
+            let integrator = Self { ts, shell };
             check(ffi::TSSetProblemType(ts, ffi::TSProblemType_TS_NONLINEAR))?;
             check(ffi::TSSetType(ts, c"beuler".as_ptr()))?;
             check(ffi::TSSetExactFinalTime(ts, ffi::TSExactFinalTimeOption_TS_EXACTFINALTIME_STEPOVER))?;
             check(ffi::TSSetMaxTime(ts, f64::MAX))?;
             check(ffi::TSSetMaxSteps(ts, i32::MAX - 1))?;
             check(ffi::TSSetMaxSNESFailures(ts, -1))?;
-            check(ffi::TSSetMaxStepRejections(ts, settings.max_cuts as i32))?;
             // A step that fails for good is a converged reason to be read, not an error of PETSc.
             check(ffi::TSSetErrorIfStepFails(ts, ffi::PetscBool_PETSC_FALSE))?;
             let mut adapt = null_mut();
@@ -161,25 +163,42 @@ impl Integrator {
             check(ffi::SNESLineSearchSetType(search, c"l2".as_ptr()))?;
             check(ffi::SNESGetKSP(snes, &mut ksp))?;
             check(ffi::KSPGetPC(ksp, &mut pc))?;
-            let (method, preconditioner) = match settings.linear {
-                Linear::Cholesky => (c"preonly", c"cholesky"),
-                Linear::Lu => (c"preonly", c"lu"),
-                Linear::Own => (c"preonly", c"shell"),
-                Linear::OwnIterative => (c"gmres", c"shell"),
+            let method = match settings.linear {
+                Linear::Preconditioned => c"fgmres",
+                Linear::Own => c"preonly",
+                Linear::OwnIterative => c"gmres",
             };
             check(ffi::KSPSetType(ksp, method.as_ptr()))?;
             check(ffi::KSPSetTolerances(ksp, 1e-9, -2.0, -2.0, -2))?;
-            check(ffi::PCSetType(pc, preconditioner.as_ptr()))?;
-            if matches!(settings.linear, Linear::Cholesky | Linear::Lu) {
-                check(ffi::PCFactorSetMatSolverType(pc, c"mumps".as_ptr()))?;
+            check(ffi::PCSetType(pc, c"shell".as_ptr()))?;
+            check(ffi::TSSetFromOptions(ts)).map_err(refused)?;
+            if !shell {
+                let mut package = null();
+                check(ffi::PCFactorGetMatSolverType(pc, &mut package))?;
+                if package.is_null() {
+                    // PETSc's own factorisations are far slower.
+                    check(ffi::PCFactorSetMatSolverType(pc, c"mumps".as_ptr()))?;
+                }
+                // Otherwise the first solve would find out that there is no such solver package.
+                check(ffi::KSPSetOperators(ksp, jacobian.raw(), jacobian.raw()))?;
+                check(ffi::PCFactorSetUpMatSolverType(pc)).map_err(refused)?;
             }
-            check(ffi::TSSetFromOptions(ts))?;
             Ok(integrator)
         }
     }
 
-    /// Steps `problem` from `u` at the time `now`, first by `dt` (s), until it says stop. `jacobian` is the matrix its
-    /// tangent is written to, `u` holds the last accepted state afterwards.
+    /// Changes how many Newton iterations an attempt may take.
+    pub fn set_max_newton(&mut self, most: usize) -> Result<()> {
+        let mut snes = null_mut();
+        // SAFETY: a place for the handle, which stays TS's own; -2 leaves a tolerance as it is.
+        unsafe {
+            check(ffi::TSGetSNES(self.ts, &mut snes))?;
+            check(ffi::SNESSetTolerances(snes, -2.0, -2.0, -2.0, most as i32, -2))
+        }
+    }
+
+    /// Steps `problem` from `u`, by `first` and what the problem says is next, until it says stop. `jacobian` is the
+    /// matrix its tangent is written to, `u` holds the last accepted state afterwards.
     ///
     /// # Errors
     /// What the problem returned, or [`Error::Solver`] when a step failed after the allowed cuts.
@@ -188,8 +207,9 @@ impl Integrator {
         problem: &mut P,
         jacobian: &mut Matrix,
         u: &mut Vector,
-        (now, dt): (f64, f64),
+        first: Attempt,
     ) -> Result<()> {
+        let Attempt { now, dt, max_cuts } = first;
         let mut context =
             Context { problem, ts: self.ts, step: Step { t: now + dt, dt }, newton: 0, cuts: 0, error: None };
         let pointer = (&raw mut context).cast::<c_void>();
@@ -204,8 +224,13 @@ impl Integrator {
             check(ffi::TSGetSNES(ts, &mut snes))?;
             check(ffi::SNESSetConvergenceTest(snes, Some(convergence::<P>), pointer, None))?;
             check(ffi::SNESSetComputeInitialGuess(snes, Some(guess::<P>), pointer))?;
-            if self.own {
-                let (mut ksp, mut pc) = (null_mut(), null_mut());
+            let (mut ksp, mut pc) = (null_mut(), null_mut());
+            check(ffi::SNESGetKSP(snes, &mut ksp))?;
+            check(ffi::KSPGetPC(ksp, &mut pc))?;
+            // Nothing where an option chose another preconditioner.
+            check(ffi::PCShellSetContext(pc, pointer))?;
+            check(ffi::PCShellSetApply(pc, Some(solve::<P>)))?;
+            if self.shell {
                 check(ffi::MatShellSetContext(jacobian.raw(), pointer))?;
                 let multiply: unsafe extern "C" fn(_, _, _) -> _ = multiply::<P>;
                 let operation = std::mem::transmute::<
@@ -213,13 +238,10 @@ impl Integrator {
                     unsafe extern "C" fn(),
                 >(multiply);
                 check(ffi::MatShellSetOperation(jacobian.raw(), ffi::MatOperation_MATOP_MULT, Some(operation)))?;
-                check(ffi::SNESGetKSP(snes, &mut ksp))?;
-                check(ffi::KSPGetPC(ksp, &mut pc))?;
-                check(ffi::PCShellSetContext(pc, pointer))?;
-                check(ffi::PCShellSetApply(pc, Some(solve::<P>)))?;
             }
             check(ffi::TSSetTime(ts, now))?;
             check(ffi::TSSetTimeStep(ts, dt))?;
+            check(ffi::TSSetMaxStepRejections(ts, max_cuts as i32))?;
             let code = ffi::TSSolve(ts, u.raw());
             ffi::TSGetConvergedReason(ts, &mut reason);
             code
@@ -237,6 +259,14 @@ impl Integrator {
             )));
         }
         Ok(())
+    }
+}
+
+/// An option's value that PETSc does not take is the user's error, and PETSc's words name the option.
+fn refused(error: Error) -> Error {
+    match error {
+        Error::Internal(words) => Error::Usage(format!("a PETSc option after -- was refused: {words}")),
+        other => other,
     }
 }
 
@@ -399,7 +429,7 @@ unsafe extern "C" fn post_step<P: Implicit>(ts: ffi::TS) -> ffi::PetscErrorCode 
                 cuts: (cuts - std::mem::replace(&mut context.cuts, cuts)) as usize,
             };
             match context.problem.accepted(accepted, &Vector::borrow(u))? {
-                Next::Step { now, dt, max_cuts } => {
+                Next::Step(Attempt { now, dt, max_cuts }) => {
                     check(ffi::TSSetTime(ts, now))?;
                     check(ffi::TSSetTimeStep(ts, dt))?;
                     check(ffi::TSSetMaxStepRejections(ts, max_cuts as i32))

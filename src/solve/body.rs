@@ -60,6 +60,11 @@ impl Body {
         &self.mesh
     }
 
+    /// The ranks that it is distributed over.
+    pub fn comm(&self) -> &SimpleCommunicator {
+        &self.comm
+    }
+
     /// Who owns what.
     pub fn numbering(&self) -> &Numbering {
         &self.numbering

@@ -64,6 +64,18 @@ impl Compliance {
         Self { order, form: Form::Dense(values) }
     }
 
+    /// Of so many components, for [`Self::set_column`] to fill.
+    pub fn unknown(order: usize) -> Self {
+        Self { order, form: Form::Dense(vec![0.0; order * order]) }
+    }
+
+    /// Makes a column known: the displacements of the face under a unit force.
+    pub fn set_column(&mut self, column: usize, values: &[f64]) {
+        if let Form::Dense(all) = &mut self.form {
+            all[column * self.order..][..self.order].copy_from_slice(values);
+        }
+    }
+
     /// Of a periodic layer of so many columns.
     pub fn of_periodic_layer(elimination: &Elimination, columns: usize) -> Result<Self> {
         let transform = Transform::new(columns);

@@ -6,8 +6,8 @@
 //! y = mu_0 u + sum_i mu_i z_i+,     c = mu_0 + sum_i mu_i gain_i,     C elastic, instantaneous     (y = u, c = 1 without memory)
 //! ```
 
-use super::super::BulkFields;
 use super::super::face::ContactFace;
+use super::super::{BulkFields, Work};
 use super::Backing;
 use super::compliance::Compliance;
 use super::interior::Interior;
@@ -70,8 +70,9 @@ impl Backing for Following {
         false
     }
 
-    fn memory_fields(&self) -> usize {
-        self.relaxation.as_ref().map_or(0, |relaxation| relaxation.arms.len())
+    fn work(&self) -> Work {
+        let memory_fields = self.relaxation.as_ref().map_or(0, |relaxation| relaxation.arms.len());
+        Work { memory_fields, ..Work::default() }
     }
 
     fn commit(&mut self, step: Step, u: &Vector, _residual: &Residual) -> Result<()> {

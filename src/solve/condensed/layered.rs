@@ -3,8 +3,8 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use super::super::BulkFields;
 use super::super::body::{Body, Moduli};
+use super::super::{BulkFields, Work};
 use super::compliance::Compliance;
 use super::remembering::{Inside, Solvers};
 use super::sparse::unprepared;
@@ -170,8 +170,8 @@ impl Inside for Layered {
         self.solvers.current().map(|solver| &solver.compliance)
     }
 
-    fn memory_fields(&self) -> usize {
-        self.elongations.len()
+    fn work(&self) -> Work {
+        Work { memory_fields: self.elongations.len(), ..Work::default() }
     }
 
     fn commit(&mut self, step: Step, residual: &Residual) -> Result<()> {

@@ -21,7 +21,7 @@ mod sparse;
 mod waves;
 
 use super::face::ContactFace;
-use super::{BulkFields, Contact, Options, TransientProblem};
+use super::{BulkFields, Contact, TransientProblem, Work};
 use crate::error::Result;
 use crate::interface::{Interface, Residual};
 use crate::loading::Phase;
@@ -35,7 +35,7 @@ pub use layered::{Layered, PeriodicColumn, Relaxations};
 pub use remembering::{Inside, Remembering};
 pub use sparse::Sparse;
 
-use newton::{Factor, SparseColumns};
+pub(super) use newton::{Factor, SparseColumns};
 
 /// What stands behind the face. All ranks call each method together; the compliance is on rank 0.
 pub trait Backing {
@@ -51,8 +51,8 @@ pub trait Backing {
     fn softness(&self) -> f64;
     /// Whether [`Self::commit`] needs the contact forces, and [`Self::free`] no rate.
     fn takes_forces(&self) -> bool;
-    /// How many fields carry memory, on this rank.
-    fn memory_fields(&self) -> usize;
+    /// What the body did: its memory, and its solves.
+    fn work(&self) -> Work;
     /// Takes the memory to the end of an accepted step that ends at `u` under the contact forces -`residual`.
     fn commit(&mut self, step: Step, u: &Vector, residual: &Residual) -> Result<()>;
     /// Adds the memory to a snapshot; `order` is that of the face.
@@ -254,11 +254,11 @@ impl<B: Backing> TransientProblem for Condensed<B> {
         self.backing.bulk_fields(&mut self.face, u)
     }
 
-    fn options(&self) -> Options {
-        Options {
-            memory_fields: self.backing.memory_fields(),
+    fn work(&self) -> Work {
+        Work {
             tangential_laws: self.face.interface().tangential_laws(),
             recoveries: self.recoveries,
+            ..self.backing.work()
         }
     }
 }

@@ -53,6 +53,11 @@ impl SparseColumns {
         Self { places, entries }
     }
 
+    /// The rows with an entry; one may come more than once.
+    pub fn rows(&self) -> impl Iterator<Item = usize> {
+        self.entries.iter().flatten().map(|&(row, _)| row)
+    }
+
     /// T v as (row, force), for v given by component.
     pub fn multiply(&self, v: impl Fn(usize) -> f64) -> impl Iterator<Item = (usize, f64)> {
         self.places.iter().zip(&self.entries).flat_map(move |(&place, entries)| {
@@ -75,6 +80,11 @@ impl Factor {
             target[j] += secant;
         }
         Ok(Self { lu: DenseLu::new(order, matrix)?, columns, secant })
+    }
+
+    /// T.
+    pub fn columns(&self) -> &SparseColumns {
+        &self.columns
     }
 
     /// Adds what the factor was made from to a snapshot: later solves depend on it by their last digits.

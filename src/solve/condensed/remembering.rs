@@ -13,8 +13,8 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
 
-use super::super::BulkFields;
 use super::super::face::ContactFace;
+use super::super::{BulkFields, Work};
 use super::Backing;
 use super::compliance::Compliance;
 use crate::error::Result;
@@ -31,8 +31,8 @@ pub trait Inside {
     fn face(&self) -> &[f64];
     /// C; none before the first step was prepared.
     fn compliance(&self) -> Option<&Compliance>;
-    /// How many fields carry memory.
-    fn memory_fields(&self) -> usize;
+    /// What it did: its memory, and its solves.
+    fn work(&self) -> Work;
     /// Takes the body to the end of the step that was prepared, under the contact forces -`residual`.
     fn commit(&mut self, step: Step, residual: &Residual) -> Result<()>;
     /// Adds the accepted state to a snapshot.
@@ -134,8 +134,8 @@ impl Backing for Remembering {
         true
     }
 
-    fn memory_fields(&self) -> usize {
-        self.inside.as_ref().map_or(0, |inside| inside.memory_fields())
+    fn work(&self) -> Work {
+        self.inside.as_ref().map_or_else(Work::default, |inside| inside.work())
     }
 
     fn commit(&mut self, step: Step, _u: &Vector, residual: &Residual) -> Result<()> {

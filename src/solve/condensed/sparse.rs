@@ -1,7 +1,7 @@
 //! A body with memory of any shape: by a sparse factorisation, two solves per step.
 
-use super::super::BulkFields;
 use super::super::body::Body;
+use super::super::{BulkFields, Work};
 use super::compliance::Compliance;
 use super::remembering::{Inside, Solvers};
 use crate::bulk::Bulk;
@@ -27,6 +27,7 @@ pub struct Sparse {
     face: Vec<f64>,
     zero: Vector,
     work: Vector,
+    done: Work,
 }
 
 /// A at one step length.
@@ -51,6 +52,7 @@ impl Sparse {
             free: vector()?,
             zero: vector()?,
             work: vector()?,
+            done: Work::default(),
             face: vec![0.0; 2 * rows.len()],
             solvers: Solvers::new(),
             bulk,
@@ -64,8 +66,9 @@ impl Sparse {
 
 impl Inside for Sparse {
     fn prepare(&mut self, step: Step) -> Result<()> {
-        let Self { solvers, bulk, tangent, kept, body, .. } = self;
+        let Self { solvers, bulk, tangent, kept, body, done, .. } = self;
         solvers.select(step.dt, || {
+            done.factorisations += 1;
             bulk.tangent(step.dt, tangent)?;
             let (factor, inverse) = Cholesky::with_inverse_schur(tangent, kept)?;
             Ok(Solver { factor, compliance: Compliance::from_free(body, &inverse) })
@@ -76,6 +79,7 @@ impl Inside for Sparse {
         self.bulk.force(step, &self.zero, &self.work, &mut self.load)?;
         self.load.scale(-1.0)?;
         self.solvers.current().ok_or_else(unprepared)?.factor.solve(&self.load, &mut self.free)?;
+        self.done.solves += 1;
         let values = self.free.view()?;
         for (pair, &row) in self.face.chunks_exact_mut(2).zip(&self.rows) {
             pair.copy_from_slice(&values[row..row + 2]);
@@ -91,8 +95,8 @@ impl Inside for Sparse {
         self.solvers.current().map(|solver| &solver.compliance)
     }
 
-    fn memory_fields(&self) -> usize {
-        self.bulk.memory_vectors()
+    fn work(&self) -> Work {
+        Work { memory_fields: self.bulk.memory_vectors(), ..self.done }
     }
 
     /// u = A^-1 (b - P R), and the arms with it.
@@ -104,6 +108,7 @@ impl Inside for Sparse {
         }
         drop(load);
         self.solvers.current().ok_or_else(unprepared)?.factor.solve(&self.load, &mut self.u)?;
+        self.done.solves += 1;
         self.bulk.commit(step, &self.u)
     }
 
