@@ -13,7 +13,7 @@ use crate::loading::{Phase, Placement};
 use crate::petsc::{Matrix, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 
-pub use body::{Body, Moduli};
+pub use body::{Body, Moduli, Region, Solid};
 pub use condensed::{
     Backing, Compliance, Condensed, Following, Inside, Interior, LARGE_FACE, Layered, PeriodicColumn, Relaxation,
     Relaxations, Remembering, Sparse,

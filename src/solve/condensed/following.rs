@@ -6,6 +6,8 @@
 //! y = mu_0 u + sum_i mu_i z_i+,     c = mu_0 + sum_i mu_i gain_i,     C elastic, instantaneous     (y = u, c = 1 without memory)
 //! ```
 
+use std::rc::Rc;
+
 use super::super::face::ContactFace;
 use super::super::{BulkFields, Work};
 use super::Backing;
@@ -28,7 +30,7 @@ pub struct Relaxation {
 /// A body that follows its face.
 pub struct Following {
     /// The elastic compliance at the instantaneous moduli, on rank 0.
-    pub compliance: Option<Compliance>,
+    pub compliance: Option<Rc<Compliance>>,
     /// Its largest entry, m per N/m, on all ranks.
     pub softness: f64,
     /// None = elastic.
@@ -59,7 +61,7 @@ impl Backing for Following {
     }
 
     fn compliance(&self) -> Option<&Compliance> {
-        self.compliance.as_ref()
+        self.compliance.as_deref()
     }
 
     fn softness(&self) -> f64 {

@@ -3,17 +3,17 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use super::super::body::{Body, Moduli};
+use super::super::body::{Body, Region, Solid};
 use super::super::{BulkFields, Work};
 use super::compliance::Compliance;
 use super::remembering::{Inside, Solvers};
 use super::sparse::unprepared;
 use super::waves::{Elimination, Operator, Transform, Wave};
 use crate::bulk::Series;
-use crate::element::quad4::{Split, Stiffness};
+use crate::element::plane::Split;
 use crate::error::Result;
 use crate::interface::Residual;
-use crate::mesh::Mesh;
+use crate::mesh::Cell;
 use crate::petsc::{Step, Vector};
 use crate::rheology::{Factors, Memory};
 use crate::snapshot::Snapshot;
@@ -21,24 +21,33 @@ use crate::snapshot::Snapshot;
 /// One column of a periodic layer.
 pub struct PeriodicColumn {
     /// Its cells, from the top down.
-    pub cells: Vec<Split>,
-    /// Instantaneous.
-    pub moduli: Moduli,
+    cells: Vec<(Split<8>, Region)>,
     /// How many such columns there are.
-    pub columns: usize,
+    columns: usize,
 }
 
 impl PeriodicColumn {
-    /// The cells' stiffness with shear and bulk modulus times their factors.
-    fn stiffness(&self, [shear, bulk]: [f64; 2]) -> Vec<Stiffness> {
-        let relaxed = Moduli { shear: self.moduli.shear * shear, bulk: self.moduli.bulk * bulk };
-        self.cells.iter().map(|split| relaxed.stiffness(split)).collect()
+    /// Of a layer's mesh, whose first cells are those of one column.
+    pub fn new(solid: &Solid, [columns, rows]: [usize; 2]) -> Self {
+        let split = |cell: usize| match solid.mesh.cells[cell] {
+            Cell::Quadrilateral(corners) => Some((solid.quadrilateral(corners), solid.region(cell))),
+            Cell::Triangle(_) => None,
+        };
+        Self { cells: (0..rows).filter_map(split).collect(), columns }
     }
 
-    /// The compliance of the face at the instantaneous moduli.
+    /// The stiffness with each part of the bulk times its factor.
+    fn operator(&self, factors: &[f64]) -> Operator {
+        let with = |(split, region): &(Split<8>, Region)| {
+            let relaxed = region.relaxed(factors);
+            split.with(relaxed.shear, relaxed.bulk)
+        };
+        Operator::new(&self.cells.iter().map(with).collect::<Vec<_>>(), self.columns)
+    }
+
+    /// The compliance of the face at the instantaneous moduli, of a bulk of one part.
     pub fn compliance(&self) -> Result<Compliance> {
-        let operator = Operator::new(&self.stiffness([1.0, 1.0]), self.columns);
-        Compliance::of_periodic_layer(&Elimination::new(&operator)?, self.columns)
+        Compliance::of_periodic_layer(&Elimination::new(&self.operator(&[1.0]))?, self.columns)
     }
 }
 
@@ -62,8 +71,7 @@ impl Relaxations {
 /// The whole layer, on the one rank that solves it. Its fields are waves.
 pub struct Layered {
     /// For output.
-    mesh: Mesh,
-    moduli: Moduli,
+    solid: Solid,
     body: Option<Body>,
     columns: usize,
     rows: usize,
@@ -89,18 +97,19 @@ struct Solver {
 }
 
 impl Layered {
-    /// At rest; the parts are those of the shear and of the bulk modulus.
-    pub fn new(mesh: Mesh, column: &PeriodicColumn, relaxations: Relaxations) -> Self {
-        let parts = [[1.0, 0.0], [0.0, 1.0]].map(|factors| Operator::new(&column.stiffness(factors), column.columns));
+    /// At rest.
+    pub fn new(solid: Solid, column: &PeriodicColumn, relaxations: Relaxations) -> Self {
+        let count = relaxations.series.len();
+        let alone = |part: usize| (0..count).map(|other| f64::from(u8::from(other == part))).collect::<Vec<f64>>();
+        let parts = (0..count).map(|part| column.operator(&alone(part))).collect();
         let (columns, rows) = (column.columns, column.cells.len());
         let field = || vec![Wave::zeros(); (columns / 2 + 1) * rows];
         Self {
-            mesh,
-            moduli: column.moduli,
+            solid,
             body: None,
             columns,
             rows,
-            parts: parts.into(),
+            parts,
             transform: Transform::new(columns),
             u: field(),
             elongations: relaxations.times.iter().map(|_| field()).collect(),
@@ -213,7 +222,7 @@ impl Inside for Layered {
     fn fields(&mut self) -> Result<BulkFields> {
         let mut body = match self.body.take() {
             Some(body) => body,
-            None => Body::new(SimpleCommunicator::self_comm(), self.mesh.clone(), self.moduli)?,
+            None => Body::new(SimpleCommunicator::self_comm(), self.solid.clone())?,
         };
         self.combine(1.0, std::iter::empty());
         let u = self.vector(&body)?;
