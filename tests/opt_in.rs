@@ -1,5 +1,6 @@
 //! Nothing runs, allocates or costs unless the scene asks for it (issue: model only what a scene requires). By
 //! counters, not clocks.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;
 

@@ -32,7 +32,7 @@ impl Cholesky {
     }
 
     /// Gives matrix^-1 e for unit vectors e, with their index: `rows` has the row of each, and whether this rank owns
-    /// it. In blocks, which take a fraction of the time of as many single solves. Collective.
+    /// it. All at once. Collective.
     pub fn solve_units(
         &self,
         comm: &impl AsCommunicator,
@@ -42,19 +42,14 @@ impl Cholesky {
         let mut local = 0;
         // SAFETY: a live matrix and a place for the number; rows and columns are distributed alike.
         unsafe { check(ffi::MatGetLocalSize(self.raw, &mut local, null_mut()))? };
-        for (block, rows) in rows.chunks(BLOCK).enumerate() {
-            let (mut right, solution) = (Dense::new(comm, local, rows.len())?, Dense::new(comm, local, rows.len())?);
-            for (column, &(row, _)) in rows.iter().enumerate().filter(|(_, (_, owned))| *owned) {
-                right.insert(row, column as i32, 1.0)?;
-            }
-            right.assemble()?;
-            // SAFETY: a factorised matrix and two distinct matrices of as many rows.
-            check(unsafe { ffi::MatMatSolve(self.raw, right.raw, solution.raw) })?;
-            for column in 0..rows.len() {
-                solution.with_column(column as i32, |vector| take(block * BLOCK + column, vector))?;
-            }
+        let (mut right, solution) = (Dense::new(comm, local, rows.len())?, Dense::new(comm, local, rows.len())?);
+        for (column, &(row, _)) in rows.iter().enumerate().filter(|(_, (_, owned))| *owned) {
+            right.insert(row, column as i32, 1.0)?;
         }
-        Ok(())
+        right.assemble()?;
+        // SAFETY: a factorised matrix and two distinct matrices of as many rows.
+        check(unsafe { ffi::MatMatSolve(self.raw, right.raw, solution.raw) })?;
+        (0..rows.len()).try_for_each(|column| solution.with_column(column as i32, |vector| take(column, vector)))
     }
 
     /// The factorisation, and the rows and columns `kept` of matrix^-1, column-major: the inverse of the Schur
@@ -105,9 +100,6 @@ impl Cholesky {
         check(unsafe { ffi::MatCholeskyFactorNumeric(self.raw, matrix.raw(), &default_settings()?) })
     }
 }
-
-/// Unit vectors that are solved for at once.
-const BLOCK: usize = 32;
 
 /// A dense matrix whose rows are distributed like a vector.
 struct Dense {

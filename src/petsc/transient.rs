@@ -163,13 +163,14 @@ impl Integrator {
             check(ffi::SNESLineSearchSetType(search, c"l2".as_ptr()))?;
             check(ffi::SNESGetKSP(snes, &mut ksp))?;
             check(ffi::KSPGetPC(ksp, &mut pc))?;
-            let method = match settings.linear {
-                Linear::Preconditioned => c"fgmres",
-                Linear::Own => c"preonly",
-                Linear::OwnIterative => c"gmres",
+            let (method, reduction) = match settings.linear {
+                // The preconditioner is nearly exact, so that this is one iteration, or two.
+                Linear::Preconditioned => (c"fgmres", 1e-12),
+                Linear::Own => (c"preonly", 1e-9),
+                Linear::OwnIterative => (c"gmres", 1e-9),
             };
             check(ffi::KSPSetType(ksp, method.as_ptr()))?;
-            check(ffi::KSPSetTolerances(ksp, 1e-9, -2.0, -2.0, -2))?;
+            check(ffi::KSPSetTolerances(ksp, reduction, -2.0, -2.0, -2))?;
             check(ffi::PCSetType(pc, c"shell".as_ptr()))?;
             check(ffi::TSSetFromOptions(ts)).map_err(refused)?;
             if !shell {

@@ -89,6 +89,14 @@ impl Compliance {
         Ok(Self { order: 2 * columns, form: Form::Periodic { transform, waves, first } })
     }
 
+    /// C of each wavenumber, and the transform; none where the face is not that of a periodic layer.
+    pub fn waves(&self) -> Option<(&Transform, &[Matrix2<f64>])> {
+        match &self.form {
+            Form::Periodic { transform, waves, .. } => Some((transform, waves)),
+            Form::Dense(_) => None,
+        }
+    }
+
     /// Rows, and columns.
     pub fn order(&self) -> usize {
         self.order

@@ -13,6 +13,7 @@
 
 mod compliance;
 mod following;
+mod fourier;
 mod interior;
 mod layered;
 mod newton;
@@ -27,6 +28,7 @@ use crate::interface::{Interface, Residual};
 use crate::loading::Phase;
 use crate::petsc::{Gather, Matrix, Step, Vector, Verdict};
 use crate::snapshot::{NaturalOrder, Snapshot};
+use fourier::Fourier;
 
 pub use compliance::Compliance;
 pub use following::{Following, Relaxation};
@@ -70,6 +72,8 @@ pub struct Condensed<B> {
     tolerance: f64,
     columns: SparseColumns,
     factor: Option<Factor>,
+    /// Instead of a factor, on a large periodic face.
+    fourier: Option<Fourier>,
     /// The secant that the factor was made with.
     factored: f64,
     /// The step that the factor was made for.
@@ -82,8 +86,8 @@ pub struct Condensed<B> {
     recoveries: usize,
 }
 
-/// Faces with more components than this are solved by GMRES with an older factor, so that a step costs the square of
-/// the components in contact and not the cube.
+/// Faces with more components than this are solved by GMRES: of a periodic layer with a preconditioner by Fourier
+/// transforms, else with an older factor, so that a step costs the square of the components in contact and not the cube.
 pub const LARGE_FACE: usize = 1200;
 /// More applications of an old factor than this in one solve, and a new one is made.
 const STALE_AFTER: usize = 10;
@@ -98,6 +102,7 @@ impl<B: Backing> Condensed<B> {
             tolerance,
             columns: SparseColumns::default(),
             factor: None,
+            fourier: None,
             factored: f64::NAN,
             factored_for: Step { t: 0.0, dt: 0.0 },
             used: 0,
@@ -118,6 +123,15 @@ impl<B: Backing> Condensed<B> {
         Ok(())
     }
 
+    /// Whether taking `correction` off leaves less of an imbalance; on the rank that has them.
+    fn lessens(&mut self, correction: &Vector, imbalance: &Vector) -> Result<bool> {
+        let mut product = correction.like()?;
+        self.multiply(correction, &mut product)?;
+        let (before, product) = (imbalance.view()?, product.view()?);
+        let left: f64 = before.iter().zip(product.iter()).map(|(g, p)| (g - p).powi(2)).sum();
+        Ok(left < before.iter().map(|g| g * g).sum())
+    }
+
     /// Brings the contact forces of the accepted state to balance with its displacements: R + T d with
     /// (c 1 + C T) d = -G. A stiff penalty turns round-off in the gap into noise of the forces, which d takes out; the
     /// displacements, whose digits are good, stay.
@@ -126,8 +140,11 @@ impl<B: Backing> Condensed<B> {
         // A backing that takes forces does not ask for the rate.
         self.backing.free(step, u, u, &mut imbalance)?;
         self.add_contact(&mut imbalance)?;
-        if self.factor.is_some() {
+        if self.factor.is_some() || self.fourier.is_some() {
             self.solve(&imbalance, &mut correction)?;
+            if self.fourier.is_some() && !self.lessens(&correction, &imbalance)? {
+                return Ok(());
+            }
             let d = correction.view()?;
             for (row, force) in self.columns.multiply(|place| -d[place]) {
                 self.face.residual[row / 2][row % 2] += force;
@@ -158,6 +175,12 @@ impl<B: Backing> TransientProblem for Condensed<B> {
         // What is below round-off beside c 1.
         let negligible = 1e-17 * secant / self.backing.softness();
         self.columns = SparseColumns::new(&self.face.tangent, &self.face.interface().face().edges, negligible);
+        if self.reuse {
+            self.fourier = Fourier::new(compliance, &self.face.tangent, &self.face.interface().face().edges, secant);
+            if self.fourier.is_some() {
+                return Ok(());
+            }
+        }
         let serves = self.reuse && self.used <= STALE_AFTER && self.factored == secant && self.factor.is_some();
         self.used = 0;
         if !serves {
@@ -181,8 +204,9 @@ impl<B: Backing> TransientProblem for Condensed<B> {
     fn solve(&mut self, b: &Vector, x: &mut Vector) -> Result<()> {
         self.used += 1;
         let (b, mut x) = (b.view()?, x.view_mut()?);
-        match (&self.factor, self.backing.compliance()) {
-            (Some(factor), Some(compliance)) => factor.solve(compliance, &b, &mut x),
+        match (&self.fourier, &self.factor, self.backing.compliance()) {
+            (Some(fourier), _, _) => fourier.solve(&b, &mut x),
+            (None, Some(factor), Some(compliance)) => factor.solve(compliance, &b, &mut x),
             _ => {
                 x.fill(f64::NAN);
                 Ok(())

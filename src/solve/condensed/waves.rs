@@ -228,6 +228,7 @@ fn transform_failed(error: realfft::FftError) -> Error {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use crate::element::quad4;
@@ -279,7 +280,6 @@ mod tests {
 
     /// Product and solution are those of the assembled matrix, to round-off.
     #[test]
-    #[allow(clippy::unwrap_used)]
     fn waves_are_the_assembled_layer() {
         let (cells, dense) = layer();
         let (operator, transform) = (Operator::new(&cells, 5), Transform::new(5));
