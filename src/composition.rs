@@ -92,6 +92,13 @@ pub fn build_with_profile(comm: &SimpleCommunicator, scene: &Scene, profile: Box
     assemble(comm, scene, (body::mesh(comm, scene, Path::new(""))?, profile), &Compliances::default())
 }
 
+/// As [`build`], with the bytes of the .msh file that the scene names, on every rank, instead of the file.
+pub fn build_on_mesh(comm: &SimpleCommunicator, scene: &Scene, bytes: &[u8]) -> Result<Problem> {
+    let mesh = body::mesh_of(bytes, scene)?;
+    let profile = shape(scene, Path::new(""), &[], Stretch::of(scene, &mesh.face))?.profile;
+    assemble(comm, scene, (mesh, profile), &Compliances::default())
+}
+
 fn assemble(
     comm: &SimpleCommunicator,
     scene: &Scene,
@@ -99,14 +106,19 @@ fn assemble(
     compliances: &Compliances,
 ) -> Result<Problem> {
     let materials = Materials::new(scene);
-    let laws = Laws { profile, penalty: scene.contact.penalty, friction: scene.friction.as_ref().map(friction) };
+    let penalty = body::penalty(scene, &mesh);
+    let laws = Laws { profile, penalty, friction: scene.friction.as_ref().map(friction) };
     let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
     let solid = Solid { mesh, quadrilateral: body::quadrilateral(scene), regions: materials.regions.clone() };
-    match form(scene) {
-        Form::Monolithic => monolithic(comm, scene, (solid, materials), interface),
-        Form::Following => following(comm, scene, (solid, materials), interface, compliances),
-        Form::Remembering => remembering(comm, scene, (solid, materials), interface),
+    let mut problem = match form(scene) {
+        Form::Monolithic => monolithic(comm, scene, (solid, materials), interface)?,
+        Form::Following => following(comm, scene, (solid, materials), interface, compliances)?,
+        Form::Remembering => remembering(comm, scene, (solid, materials), interface)?,
+    };
+    if scene.output.energy {
+        problem.strategy.keep_account(&problem.u)?;
     }
+    Ok(problem)
 }
 
 /// How a scene is solved.
@@ -168,7 +180,7 @@ fn following(
         None => None,
     };
     let interior = Interior::new(comm, solid);
-    let backing = Following { compliance, softness, relaxation, interior, secant: 1.0 };
+    let backing = Following { compliance, softness, relaxation, interior, secant: 1.0, account: None };
     condensed(comm, scene, mesh, u, (interface, backing))
 }
 
@@ -215,7 +227,8 @@ fn compliance(scene: &Scene, solid: &Solid) -> Result<Compliance> {
 
 /// The whole body with its memory, on this rank alone.
 fn inside(scene: &Scene, solid: &Solid, materials: Materials) -> Result<Box<dyn Inside>> {
-    if let Some(column) = periodic_column(scene, solid) {
+    // Waves keep no account of the energy.
+    if let Some(column) = periodic_column(scene, solid).filter(|_| !scene.output.energy) {
         let Materials { times, series, memory: rule, .. } = materials;
         return Ok(Box::new(Layered::new(solid.clone(), &column, Relaxations { times, rule, series })));
     }

@@ -3,6 +3,7 @@
 //! Every rank holds the whole face (it is one dimension smaller than the body) and evaluates all of it from the same
 //! numbers, so every rank sees the same error and the same totals; each rank assembles only the rows that it owns.
 
+mod exchange;
 mod oscillation;
 
 use nalgebra::{Matrix2, Vector2};
@@ -13,6 +14,8 @@ use crate::friction::Friction;
 use crate::loading::Placement;
 use crate::mesh::Face;
 use crate::profile::{Elevation, Profile};
+
+pub use exchange::Exchange;
 
 /// Displacements and rates of the face's nodes, in the order of the face: x, z of each.
 #[derive(Debug, Clone, PartialEq)]
@@ -242,11 +245,10 @@ impl Interface {
         for (point, elevation) in self.points.iter().zip(&self.elevations) {
             let motion = motion(point, elevation, placement, surface);
             let traction = mpjr::traction(motion, self.laws.penalty, self.laws.friction.as_ref());
-            let force = point.frame.tr_mul(&traction.residual());
-            let dx = point.weight * point.frame[(0, 0)];
-            totals.normal_force += point.weight * force.y;
-            totals.tangential_force += dx * traction.shear;
-            totals.hysteretic_force += dx * traction.pressure * elevation.slope;
+            let [normal, tangential, hysteretic] = point.forces(&traction, elevation.slope);
+            totals.normal_force += normal;
+            totals.tangential_force += tangential;
+            totals.hysteretic_force += hysteretic;
             totals.max_penetration = totals.max_penetration.max(motion.normal - motion.clearance);
             length += point.weight;
             if traction.pressure > 0.0 {
@@ -327,6 +329,15 @@ impl Interface {
 
     fn traction(&self, point: &Point, elevation: &Elevation, placement: Placement, surface: &Surface) -> Traction {
         mpjr::traction(motion(point, elevation, placement, surface), self.laws.penalty, self.laws.friction.as_ref())
+    }
+}
+
+impl Point {
+    /// What it adds to N, Q and integral of p dh/dx, N/m: what the indenter works with as it moves down, and along.
+    fn forces(&self, traction: &Traction, slope: f64) -> [f64; 3] {
+        let force = self.frame.tr_mul(&traction.residual());
+        let dx = self.weight * self.frame[(0, 0)];
+        [self.weight * force.y, dx * traction.shear, dx * traction.pressure * slope]
     }
 }
 

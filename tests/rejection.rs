@@ -72,6 +72,7 @@ struct Told {
 impl Observer for Told {
     fn observe(&mut self, report: Report<'_>) -> Result<()> {
         self.times.push(report.time);
+        let energy = report.problem.energy().unwrap();
         let mut contact = report.problem.contact()?;
         let (totals, fields) = (contact.totals()?, contact.fields()?);
         let mut told = vec![
@@ -82,6 +83,11 @@ impl Observer for Told {
             totals.contact_fraction,
             totals.stick_fraction,
             totals.max_penetration,
+            energy.external_work,
+            energy.stored,
+            energy.viscoelastic_dissipation,
+            energy.friction_dissipation,
+            energy.penalty,
         ];
         for field in [&fields.pressure, &fields.shear, &fields.gap, &fields.slip_rate] {
             told.extend(field);

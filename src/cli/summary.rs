@@ -5,9 +5,10 @@ use std::time::Duration;
 
 use super::material;
 use crate::composition::{self, Form, Outline, Stretch};
+use crate::energy::Energy;
 use crate::output::{HistoryRow, Status};
 use crate::petsc;
-use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
+use crate::scene::{Friction, Penalty, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
 use crate::solve::{Counts, Work};
 
 /// What is modelled and what is not: (modelled, not modelled).
@@ -35,18 +36,16 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
         }
         None => no.push("friction (symmetric solver)".to_owned()),
     }
-    let softer = scene.layer().map_or_else(String::new, |layer| {
-        let added = added_compliance(scene.contact.penalty, layer, &scene.materials);
-        format!(" ({added:.2e} of the compliance to the wave the layer is stiffest to)")
-    });
     yes.push(format!(
-        "contact: penalty {:.3e} Pa/m{softer}, {} quadrature",
-        scene.contact.penalty,
+        "contact: penalty {}, {} quadrature",
+        penalty(scene),
         match scene.contact.quadrature {
             Quadrature::Nodal => "nodal",
             Quadrature::Gauss => "two-point Gauss",
         }
     ));
+    let balance = if scene.output.energy { &mut yes } else { &mut no };
+    balance.push("energy balance".to_owned());
     if scene.output.bulk_at.is_empty() {
         no.push("stress recovery and bulk output".to_owned());
     } else {
@@ -54,6 +53,18 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
     }
     no.push("inertia, large strains, thermal effects".to_owned());
     (yes, no)
+}
+
+/// The penalty, and how much it softens a layer.
+fn penalty(scene: &Scene) -> String {
+    match (scene.contact.penalty, scene.layer()) {
+        (Penalty::Stiffness(stiffness), Some(layer)) => {
+            let added = added_compliance(stiffness, layer, &scene.materials);
+            format!("{stiffness:.3e} Pa/m ({added:.2e} of the compliance to the wave the layer is stiffest to)")
+        }
+        (Penalty::Stiffness(stiffness), None) => format!("{stiffness:.3e} Pa/m"),
+        (Penalty::Tolerance(tolerance), _) => format!("that softens the body by {tolerance} at most"),
+    }
 }
 
 /// What `mpjr check` prints after the resolved scene.
@@ -66,6 +77,9 @@ pub fn plan(scene: &Scene, outline: &Outline) -> String {
     let _ = writeln!(text, "not modelled:  {}", no.join("\n               "));
     text += &material::lines(scene);
     let _ = writeln!(text, "mesh:          {}, {} unknowns", extent(scene, outline), outline.unknowns);
+    if let Some(penalty) = outline.penalty {
+        let _ = writeln!(text, "penalty:       {penalty:.3e} Pa/m");
+    }
     let _ = writeln!(
         text,
         "loading:       {} phase(s), {} steps, {:.6} s",
@@ -158,6 +172,9 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
         "{:<15}{:.4} of the face, {:.4} of it sticking; penetration {:.1e} m",
         "final contact:", last.contact_fraction, last.stick_fraction, last.max_penetration
     );
+    if scene.output.energy {
+        let _ = writeln!(text, "{:<15}{}", "energy:", balance(&last.energy));
+    }
     let _ =
         writeln!(text, "{:<15}{} steps{pieces}, {} Newton iterations{sparse}", "work:", counts.steps, counts.newton);
     let _ = writeln!(
@@ -174,6 +191,16 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     let _ = writeln!(text, "{:<15}at most {:.2} GB a rank", "memory:", petsc::peak_memory() as f64 / 1e9);
     let _ = writeln!(text, "{:<15}{blas}", "BLAS:");
     text
+}
+
+/// The energy balance as a sum.
+fn balance(energy: &Energy) -> String {
+    let Energy { external_work, stored, viscoelastic_dissipation, friction_dissipation, penalty, imbalance } = energy;
+    format!(
+        "work {external_work:.3e} = stored {stored:.3e} + arms {viscoelastic_dissipation:.3e} + friction \
+         {friction_dissipation:.3e}\n{:15}+ penalty {penalty:.3e} + imbalance {imbalance:.3e} J/m",
+        ""
+    )
 }
 
 /// How the scene is solved, and why.
@@ -197,7 +224,7 @@ fn strategy(scene: &Scene) -> String {
             }
             lines
         }
-        Form::Remembering if by_wave => vec![
+        Form::Remembering if by_wave && !scene.output.energy => vec![
             "condensed: not all moduli relax alike, so that the interior has a memory of its own;",
             "periodic layer: it is solved for wavenumber by wavenumber (by the first rank alone), once per step,",
             "without a sparse matrix; Newton runs on the nodes in contact",
@@ -238,7 +265,7 @@ impl Estimate {
                 8.0 * face * face + entries(0.6) + 4.0 * matrix + arms * vector,
             ),
             Form::Following => (contact, compliance + 80.0 * unknowns),
-            Form::Remembering if by_wave => {
+            Form::Remembering if by_wave && !scene.output.energy => {
                 (contact + 3e-8 * unknowns * arms, (12.0 + arms) * vector + 80.0 * unknowns)
             }
             Form::Remembering => (contact + 2.0 * solve, compliance + entries(0.6) + 3.0 * matrix + arms * vector),

@@ -5,8 +5,9 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::Contact;
+use crate::energy::FaceEnergy;
 use crate::error::{Error, Result};
-use crate::interface::{Interface, Residual, Surface, Tangent};
+use crate::interface::{Exchange, Interface, Residual, Surface, Tangent};
 use crate::loading::{Phase, Placement};
 use crate::petsc::{Gather, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
@@ -25,6 +26,8 @@ pub struct ContactFace {
     /// Their derivatives at the trial state; zero where a component is held.
     pub tangent: Tangent,
     first_norm: f64,
+    /// Only where the energy is asked for.
+    exchange: Option<Exchange>,
 }
 
 /// The face at some state.
@@ -49,7 +52,18 @@ impl ContactFace {
             residual: Residual::new(),
             tangent: Tangent::default(),
             first_norm: 0.0,
+            exchange: None,
         }
+    }
+
+    /// Keeps account of the energy from here on, at rest.
+    pub fn keep_account(&mut self) {
+        self.exchange = Some(Exchange::new(&self.interface));
+    }
+
+    /// The energy that went through at the accepted state, where it is kept account of.
+    pub fn energy(&self) -> Option<FaceEnergy> {
+        self.exchange.as_ref().map(Exchange::energy)
     }
 
     /// The laws on the face.
@@ -166,7 +180,10 @@ impl ContactFace {
         }
         self.accepted.placement = placement;
         self.accepted.scale = self.trial.scale;
-        Ok(())
+        match &mut self.exchange {
+            Some(exchange) => exchange.advance(&mut self.interface, placement, &self.accepted.surface, step.dt),
+            None => Ok(()),
+        }
     }
 
     /// Makes `residual` hold at the accepted state.
@@ -183,6 +200,9 @@ impl ContactFace {
             &self.accepted;
         snapshot.put("face", vec![*approach, *sliding, *sliding_rate, *approach_rate, *scale]);
         snapshot.put("face-rate", surface.rate.clone());
+        if let Some(exchange) = &self.exchange {
+            exchange.save(snapshot);
+        }
     }
 
     /// Takes the accepted state, whose solution is `u`, from a snapshot.
@@ -191,6 +211,9 @@ impl ContactFace {
         self.accepted.placement = Placement { approach, sliding, sliding_rate, approach_rate };
         self.accepted.scale = scale;
         snapshot.fill("face-rate", &mut self.accepted.surface.rate)?;
+        if let Some(exchange) = &mut self.exchange {
+            exchange.restore(snapshot, self.accepted.placement)?;
+        }
         self.gather.gather(u, &mut self.accepted.surface.displacement)
     }
 

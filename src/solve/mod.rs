@@ -7,6 +7,7 @@ mod face;
 mod monolithic;
 mod woodbury;
 
+use crate::energy::Energy;
 use crate::error::{Error, Result};
 use crate::interface::{Fields, Interface, Surface, Totals};
 use crate::loading::{Phase, Placement};
@@ -44,6 +45,10 @@ pub trait TransientProblem {
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
     /// Takes the accepted state to the end of an accepted step.
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()>;
+    /// Keeps account of the energy from here on, at rest; `layout` is that of the solution.
+    fn keep_account(&mut self, layout: &Vector) -> Result<()>;
+    /// The energy balance at the accepted state, where it is kept account of.
+    fn energy(&self) -> Option<Energy>;
     /// Adds the accepted state, with the solution `u`, to a snapshot: all that later steps depend on, down to the last
     /// bit.
     fn save(&mut self, u: &Vector, snapshot: &mut Snapshot) -> Result<()>;

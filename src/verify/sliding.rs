@@ -27,7 +27,7 @@ fn case(n: usize, (penalty, update, finer): (f64, Update, usize), poisson: f64) 
     let phases = vec![Phase::press(10.0, 50 * finer, 1e-3), Phase::slide(0.1, 1.0, 100 * finer, 1e-3)];
     let solid = one_arm(poisson, PoissonRule::ConstantRatio);
     let setting = Setting { penalty, update, friction: Some([0.2, 1e-3]), ..Setting::new(n, solid, phases) };
-    let settings = vec![setting.clone()];
+    let subjects = vec![setting.clone().into()];
     let compare = move |solutions: &[Solution]| {
         let exact = setting.transient(n.min(256))?;
         let [pressed, slid] = [&exact[0], &exact[1]];
@@ -53,7 +53,7 @@ fn case(n: usize, (penalty, update, finer): (f64, Update, usize), poisson: f64) 
     Case {
         name: format!("transient, nu = {poisson}, alpha = {penalty:e}, {memory}{steps}"),
         source: "the same steps in Fourier space, same nodes",
-        settings,
+        subjects,
         compare: Box::new(compare),
     }
 }

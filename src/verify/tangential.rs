@@ -39,7 +39,7 @@ fn mindlin(n: usize) -> Case {
         friction: Some([FRICTION, 1e-6]),
         ..deep(n, POISSON, Indenter::Parabola(1.0), vec![press(approach), sway])
     };
-    let settings = vec![setting.clone()];
+    let subjects = vec![setting.clone().into()];
     let compare = move |solutions: &[Solution]| {
         let (solution, end) = (&solutions[0], &solutions[0].ends[1]);
         let row = solution.last();
@@ -78,7 +78,7 @@ fn mindlin(n: usize) -> Case {
     Case {
         name: format!("Cattaneo-Mindlin, nu = {POISSON}, {n} cells"),
         source: "Johnson, Contact Mechanics, 7.2(d)",
-        settings,
+        subjects,
         compare: Box::new(compare),
     }
 }

@@ -11,7 +11,8 @@ use super::sparse::unprepared;
 use super::waves::{Elimination, Operator, Transform, Wave};
 use crate::bulk::Series;
 use crate::element::plane::Split;
-use crate::error::Result;
+use crate::energy::BodyEnergy;
+use crate::error::{Error, Result};
 use crate::interface::Residual;
 use crate::mesh::Cell;
 use crate::petsc::{Step, Vector};
@@ -181,6 +182,14 @@ impl Inside for Layered {
 
     fn work(&self) -> Work {
         Work { memory_fields: self.elongations.len(), ..Work::default() }
+    }
+
+    fn keep_account(&mut self) -> Result<()> {
+        Err(Error::Internal("waves keep no account of the energy".into()))
+    }
+
+    fn energy(&self) -> Option<BodyEnergy> {
+        None
     }
 
     fn commit(&mut self, step: Step, residual: &Residual) -> Result<()> {

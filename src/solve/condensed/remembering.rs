@@ -17,6 +17,7 @@ use super::super::face::ContactFace;
 use super::super::{BulkFields, Work};
 use super::Backing;
 use super::compliance::Compliance;
+use crate::energy::BodyEnergy;
 use crate::error::Result;
 use crate::interface::Residual;
 use crate::parallel::agree;
@@ -33,6 +34,10 @@ pub trait Inside {
     fn compliance(&self) -> Option<&Compliance>;
     /// What it did: its memory, and its solves.
     fn work(&self) -> Work;
+    /// Keeps account of the energy from here on, at rest.
+    fn keep_account(&mut self) -> Result<()>;
+    /// The energy at the accepted state, where it is kept account of.
+    fn energy(&self) -> Option<BodyEnergy>;
     /// Takes the body to the end of the step that was prepared, under the contact forces -`residual`.
     fn commit(&mut self, step: Step, residual: &Residual) -> Result<()>;
     /// Adds the accepted state to a snapshot.
@@ -84,12 +89,14 @@ pub struct Remembering {
     softness: f64,
     /// Length of the step that was prepared, s.
     prepared: Option<f64>,
+    /// On all ranks; only where it is asked for.
+    energy: Option<BodyEnergy>,
 }
 
 impl Remembering {
     /// At rest; `inside` is on rank 0 of `comm`.
     pub fn new(comm: &SimpleCommunicator, inside: Option<Box<dyn Inside>>) -> Self {
-        Self { comm: comm.duplicate(), inside, softness: 0.0, prepared: None }
+        Self { comm: comm.duplicate(), inside, softness: 0.0, prepared: None, energy: None }
     }
 }
 
@@ -138,10 +145,24 @@ impl Backing for Remembering {
         self.inside.as_ref().map_or_else(Work::default, |inside| inside.work())
     }
 
+    fn keep_account(&mut self, _layout: &Vector) -> Result<()> {
+        if let Some(inside) = &mut self.inside {
+            inside.keep_account()?;
+        }
+        self.energy = Some(BodyEnergy::default());
+        Ok(())
+    }
+
+    fn energy(&self) -> Option<BodyEnergy> {
+        self.energy
+    }
+
     fn commit(&mut self, step: Step, _u: &Vector, residual: &Residual) -> Result<()> {
         let mine = self.inside.as_mut().map_or(Ok(()), |inside| inside.commit(step, residual));
         self.prepared = None;
-        agree(&self.comm, mine)
+        agree(&self.comm, mine)?;
+        self.share_energy();
+        Ok(())
     }
 
     fn save(&mut self, _order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()> {
@@ -152,11 +173,25 @@ impl Backing for Remembering {
     fn restore(&mut self, _order: &NaturalOrder, snapshot: &Snapshot, _u: &Vector) -> Result<()> {
         self.prepared = None;
         let mine = self.inside.as_mut().map_or(Ok(()), |inside| inside.restore(snapshot));
-        agree(&self.comm, mine)
+        agree(&self.comm, mine)?;
+        self.share_energy();
+        Ok(())
     }
 
     fn bulk_fields(&mut self, _face: &mut ContactFace, _u: &Vector) -> Result<BulkFields> {
         let mine = self.inside.as_mut().map_or(Ok(BulkFields::default()), |inside| inside.fields());
         agree(&self.comm, mine)
+    }
+}
+
+impl Remembering {
+    /// Gives every rank the energy of the body. Collective.
+    fn share_energy(&mut self) {
+        let Some(energy) = &mut self.energy else { return };
+        let mine = self.inside.as_ref().and_then(|inside| inside.energy()).unwrap_or_default();
+        let mut numbers = [mine.stored, mine.dissipated];
+        self.comm.process_at_rank(0).broadcast_into(&mut numbers[..]);
+        let [stored, dissipated] = numbers;
+        *energy = BodyEnergy { stored, dissipated };
     }
 }

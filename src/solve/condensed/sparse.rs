@@ -5,6 +5,7 @@ use super::super::{BulkFields, Work};
 use super::compliance::Compliance;
 use super::remembering::{Inside, Solvers};
 use crate::bulk::Bulk;
+use crate::energy::BodyEnergy;
 use crate::error::{Error, Result};
 use crate::interface::Residual;
 use crate::petsc::{Cholesky, Matrix, Step, Vector};
@@ -97,6 +98,15 @@ impl Inside for Sparse {
 
     fn work(&self) -> Work {
         Work { memory_fields: self.bulk.memory_vectors(), ..self.done }
+    }
+
+    fn keep_account(&mut self) -> Result<()> {
+        self.bulk.keep_account();
+        Ok(())
+    }
+
+    fn energy(&self) -> Option<BodyEnergy> {
+        self.bulk.energy()
     }
 
     /// u = A^-1 (b - P R), and the arms with it.
