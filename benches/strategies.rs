@@ -27,8 +27,13 @@ const CASES: [(&str, &str, &[&str]); 5] = [
 ];
 
 /// What every case changes.
-const FEW_STEPS: [&str; 4] =
-    ["phase.indent.steps=4", "phase.slide.distance=0.04", "phase.slide.steps=8", "output.bulk_at=[]"];
+const FEW_STEPS: [&str; 5] = [
+    "phase.indent.steps=4",
+    "phase.slide.distance=0.04",
+    "phase.slide.steps=8",
+    "output.bulk_at=[]",
+    "output.energy=false",
+];
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

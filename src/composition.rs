@@ -227,8 +227,7 @@ fn compliance(scene: &Scene, solid: &Solid) -> Result<Compliance> {
 
 /// The whole body with its memory, on this rank alone.
 fn inside(scene: &Scene, solid: &Solid, materials: Materials) -> Result<Box<dyn Inside>> {
-    // Waves keep no account of the energy.
-    if let Some(column) = periodic_column(scene, solid).filter(|_| !scene.output.energy) {
+    if let Some(column) = periodic_column(scene, solid) {
         let Materials { times, series, memory: rule, .. } = materials;
         return Ok(Box::new(Layered::new(solid.clone(), &column, Relaxations { times, rule, series })));
     }

@@ -20,7 +20,7 @@ use crate::rheology::Memory;
 use crate::snapshot::{NaturalOrder, Snapshot};
 
 pub use arms::{Arms, Series};
-pub use springs::{Account, Springs};
+pub use springs::{Account, Products, Springs};
 
 /// A stiffness with its modulus, and how it relaxes.
 pub struct Part {

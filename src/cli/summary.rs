@@ -224,7 +224,7 @@ fn strategy(scene: &Scene) -> String {
             }
             lines
         }
-        Form::Remembering if by_wave && !scene.output.energy => vec![
+        Form::Remembering if by_wave => vec![
             "condensed: not all moduli relax alike, so that the interior has a memory of its own;",
             "periodic layer: it is solved for wavenumber by wavenumber (by the first rank alone), once per step,",
             "without a sparse matrix; Newton runs on the nodes in contact",
@@ -265,7 +265,7 @@ impl Estimate {
                 8.0 * face * face + entries(0.6) + 4.0 * matrix + arms * vector,
             ),
             Form::Following => (contact, compliance + 80.0 * unknowns),
-            Form::Remembering if by_wave && !scene.output.energy => {
+            Form::Remembering if by_wave => {
                 (contact + 3e-8 * unknowns * arms, (12.0 + arms) * vector + 80.0 * unknowns)
             }
             Form::Remembering => (contact + 2.0 * solve, compliance + entries(0.6) + 3.0 * matrix + arms * vector),

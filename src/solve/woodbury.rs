@@ -12,6 +12,7 @@
 //! Krylov method around it. Nothing here depends on earlier steps, to the last digit.
 
 use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
 
 use super::condensed::{Compliance, Factor, SparseColumns};
 use super::face::ContactFace;
@@ -50,7 +51,6 @@ struct Base {
 impl Woodbury {
     /// Costs nothing until the first solve.
     pub fn new(comm: &SimpleCommunicator, rows: Vec<(i32, Option<usize>)>, layout: &Vector) -> Result<Self> {
-        use mpi::traits::Communicator;
         Ok(Self { comm: comm.duplicate(), rows, base: None, contact: None, work: layout.like()?, done: [0; 2] })
     }
 

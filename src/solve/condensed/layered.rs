@@ -9,10 +9,10 @@ use super::compliance::Compliance;
 use super::remembering::{Inside, Solvers};
 use super::sparse::unprepared;
 use super::waves::{Elimination, Operator, Transform, Wave};
-use crate::bulk::Series;
+use crate::bulk::{Account, Products, Series};
 use crate::element::plane::Split;
 use crate::energy::BodyEnergy;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::interface::Residual;
 use crate::mesh::Cell;
 use crate::petsc::{Step, Vector};
@@ -89,6 +89,8 @@ pub struct Layered {
     work: Vec<Wave>,
     /// u0, per component of the face.
     face: Vec<f64>,
+    /// Only where it is asked for.
+    account: Option<Account>,
 }
 
 /// A at one step length.
@@ -119,6 +121,32 @@ impl Layered {
             work: field(),
             face: vec![0.0; 2 * columns],
             relaxations,
+            account: None,
+        }
+    }
+
+    /// Takes the account to the end of a step that ends at the displacements `swept`.
+    fn spend(&mut self, step: Step) {
+        let Some(account) = &mut self.account else { return };
+        let Relaxations { times, rule, series } = &self.relaxations;
+        let of_step = |time: &f64| (rule.factors(step.dt / time), rule.losses(step.dt / time));
+        let arms: Vec<_> = times.iter().map(of_step).collect();
+        for ((work, new), old) in self.work.iter_mut().zip(&self.swept).zip(&self.u) {
+            *work = new - old;
+        }
+        let elastic = Series { long_term: 1.0, weights: Vec::new() };
+        for ((part, series), springs) in self.parts.iter().zip(series).zip(&mut account.parts) {
+            // v = -K du, and so all products with it.
+            let mut v = vec![Wave::zeros(); self.u.len()];
+            part.subtract_product(&self.work, &mut v);
+            let dot = |field: &[Wave]| -dot(field, &v, (self.columns, self.rows));
+            let change = dot(&self.work);
+            let products = Products {
+                sum: change + 2.0 * dot(&self.u),
+                change,
+                arms: self.elongations.iter().map(|elongation| dot(elongation)).collect(),
+            };
+            account.dissipated += springs.advance(series.as_ref().unwrap_or(&elastic), &products, &arms);
         }
     }
 
@@ -184,12 +212,13 @@ impl Inside for Layered {
         Work { memory_fields: self.elongations.len(), ..Work::default() }
     }
 
-    fn keep_account(&mut self) -> Result<()> {
-        Err(Error::Internal("waves keep no account of the energy".into()))
+    fn keep_account(&mut self) {
+        let arms = self.relaxations.series.iter().map(|series| series.as_ref().map_or(0, |_| self.elongations.len()));
+        self.account = Some(Account::new(arms));
     }
 
     fn energy(&self) -> Option<BodyEnergy> {
-        None
+        self.account.as_ref().map(Account::energy)
     }
 
     fn commit(&mut self, step: Step, residual: &Residual) -> Result<()> {
@@ -198,6 +227,7 @@ impl Inside for Layered {
             *swept -= force;
         }
         self.solvers.current().ok_or_else(unprepared)?.elimination.complete(&mut self.swept);
+        self.spend(step);
         for (elongation, factor) in self.elongations.iter_mut().zip(self.relaxations.factors(step.dt)) {
             for ((z, new), old) in elongation.iter_mut().zip(&self.swept).zip(&self.u) {
                 *z = *z * factor.decay + (new - old) * factor.gain;
@@ -208,6 +238,9 @@ impl Inside for Layered {
     }
 
     fn save(&self, snapshot: &mut Snapshot) -> Result<()> {
+        if let Some(account) = &self.account {
+            account.save(snapshot);
+        }
         let flat = |waves: &[Wave]| waves.iter().flat_map(|wave| wave.as_slice()).copied().collect();
         snapshot.put("waves", flat(&self.u));
         for (index, elongation) in self.elongations.iter().enumerate() {
@@ -217,6 +250,9 @@ impl Inside for Layered {
     }
 
     fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
+        if let Some(account) = &mut self.account {
+            account.restore(snapshot)?;
+        }
         let names = std::iter::once("waves".to_owned()).chain((0..).map(|index| format!("waves-arm-{index}")));
         for (name, waves) in names.zip(std::iter::once(&mut self.u).chain(&mut self.elongations)) {
             let mut flat = vec![0.0; 4 * waves.len()];
@@ -247,4 +283,14 @@ impl Inside for Layered {
         self.body = Some(body);
         fields
     }
+}
+
+/// The sum over all nodes of the product of two fields.
+fn dot(a: &[Wave], b: &[Wave], (columns, rows): (usize, usize)) -> f64 {
+    let waves = a.chunks_exact(rows).zip(b.chunks_exact(rows)).enumerate();
+    let of_wave = |(k, (a, b)): (usize, (&[Wave], &[Wave]))| {
+        let twice = if k == 0 || 2 * k == columns { 1.0 } else { 2.0 };
+        twice * a.iter().zip(b).map(|(a, b)| a.dot(b)).sum::<f64>()
+    };
+    waves.map(of_wave).sum::<f64>() / columns as f64
 }

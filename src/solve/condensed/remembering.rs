@@ -35,7 +35,7 @@ pub trait Inside {
     /// What it did: its memory, and its solves.
     fn work(&self) -> Work;
     /// Keeps account of the energy from here on, at rest.
-    fn keep_account(&mut self) -> Result<()>;
+    fn keep_account(&mut self);
     /// The energy at the accepted state, where it is kept account of.
     fn energy(&self) -> Option<BodyEnergy>;
     /// Takes the body to the end of the step that was prepared, under the contact forces -`residual`.
@@ -147,7 +147,7 @@ impl Backing for Remembering {
 
     fn keep_account(&mut self, _layout: &Vector) -> Result<()> {
         if let Some(inside) = &mut self.inside {
-            inside.keep_account()?;
+            inside.keep_account();
         }
         self.energy = Some(BodyEnergy::default());
         Ok(())

@@ -100,9 +100,8 @@ impl Inside for Sparse {
         Work { memory_fields: self.bulk.memory_vectors(), ..self.done }
     }
 
-    fn keep_account(&mut self) -> Result<()> {
+    fn keep_account(&mut self) {
         self.bulk.keep_account();
-        Ok(())
     }
 
     fn energy(&self) -> Option<BodyEnergy> {
