@@ -38,6 +38,7 @@ distance = 0.1
 steps = 15
 [friction]
 [output]
+energy = false
 "#;
 
 fn main() {
@@ -85,7 +86,7 @@ fn rows() -> Vec<(String, String)> {
     rows.push(("arms: 3, constant bulk".to_owned(), arms(3, "constant_bulk_modulus")));
     rows.push(("friction".to_owned(), BARE.replace("[friction]\n", friction)));
     rows.push(("Gauss quadrature".to_owned(), bare.replace("penalty = 1e6", "penalty = 1e6\nquadrature = \"gauss\"")));
-    rows.push(("energy".to_owned(), bare.replace("[output]", "[output]\nenergy = true")));
+    rows.push(("energy".to_owned(), bare.replace("energy = false", "energy = true")));
     rows.push(("B-bar".to_owned(), bare.replace("sides = ", "element = \"q4_bbar\"\nsides = ")));
     rows.push((
         "bulk fields, 4 moments".to_owned(),
