@@ -45,6 +45,8 @@ pub struct Interface {
     /// The indenter's place that `elevations` hold for.
     placed: Option<Placement>,
     elevations: Vec<Elevation>,
+    /// Evaluations of the tangential law in residuals and tangents.
+    tangential_laws: usize,
 }
 
 /// An integration point of the face.
@@ -141,7 +143,15 @@ impl Interface {
                 .collect(),
         };
         let elevations = Vec::with_capacity(points.len());
-        Self { face, laws, points, nodal: quadrature == Quadrature::Nodal, placed: None, elevations }
+        Self {
+            face,
+            laws,
+            points,
+            nodal: quadrature == Quadrature::Nodal,
+            placed: None,
+            elevations,
+            tangential_laws: 0,
+        }
     }
 
     /// The face.
@@ -152,6 +162,11 @@ impl Interface {
     /// Whether a friction law is modelled.
     pub fn has_friction(&self) -> bool {
         self.laws.friction.is_some()
+    }
+
+    /// How often residuals and tangents evaluated the tangential law.
+    pub fn tangential_laws(&self) -> usize {
+        self.tangential_laws
     }
 
     /// Whether friction still answers to the slip rate at this one, m/s.
@@ -173,13 +188,17 @@ impl Interface {
         self.place(placement)?;
         out.clear();
         out.resize(self.face.x.len(), Vector2::zeros());
+        let mut in_contact = 0;
         for (point, elevation) in self.points.iter().zip(&self.elevations) {
-            let force = self.traction(point, elevation, placement, surface).residual() * point.weight;
+            let traction = self.traction(point, elevation, placement, surface);
+            in_contact += usize::from(traction.pressure > 0.0);
+            let force = traction.residual() * point.weight;
             let force = point.frame.tr_mul(&force);
             for (node, shape) in point.nodes.iter().zip(point.shape) {
                 out[*node] += force * shape;
             }
         }
+        self.count_laws(in_contact);
         Ok(())
     }
 
@@ -195,8 +214,11 @@ impl Interface {
         if !self.nodal {
             out.coupling.resize(self.face.edges.len(), [Matrix2::zeros(); 2]);
         }
+        let mut in_contact = 0;
         for (i, (point, elevation)) in self.points.iter().zip(&self.elevations).enumerate() {
-            let block = self.traction(point, elevation, placement, surface).tangent(shift) * point.weight;
+            let traction = self.traction(point, elevation, placement, surface);
+            in_contact += usize::from(traction.pressure > 0.0);
+            let block = traction.tangent(shift) * point.weight;
             let block = point.frame.tr_mul(&block) * point.frame;
             let ([a, b], [na, nb]) = (point.nodes, point.shape);
             out.diagonal[a] += block * (na * na);
@@ -208,6 +230,7 @@ impl Interface {
                 }
             }
         }
+        self.count_laws(in_contact);
         Ok(())
     }
 
@@ -295,6 +318,13 @@ impl Interface {
         }
         self.placed = Some(placement);
         Ok(())
+    }
+
+    /// The tangential law is asked where there is pressure.
+    fn count_laws(&mut self, in_contact: usize) {
+        if self.has_friction() {
+            self.tangential_laws += in_contact;
+        }
     }
 
     fn traction(&self, point: &Point, elevation: &Elevation, placement: Placement, surface: &Surface) -> Traction {

@@ -79,21 +79,34 @@ fn climb(world: &SimpleCommunicator, arguments: &StudyArguments) -> Result<()> {
         }
     };
     let mut solver = Solver::new(&subject, &tell);
-    let gave_up = |what: &str| Error::Solver(format!("{}: {what} could not be solved", file.display()));
-    let base = solver.run(&[])?.ok_or_else(|| gave_up("the scene as it is"))?;
+    let gave_up = |what: &str| Error::Solver(format!("{}: could not be solved: {what}", file.display()));
+    let base = solver.run(&[])?.ok_or_else(|| gave_up("no convergence as it is"))?;
     let climbed = ladders.into_iter().map(|ladder| solver.climb(ladder)).collect::<Result<Vec<_>>>()?;
-    let finest = solver.run(&advice::finest(&climbed))?;
-    let finest = finest.ok_or_else(|| gave_up("with the finest of all settings it"))?;
     let targets = arguments.error.map_or(TARGETS.to_vec(), |error| vec![error]);
-    let advised = advice::advise(&mut solver, &climbed, (&base, &finest), &targets)?;
-    let left = climbed.iter().map(|ladder| ladder.finest).sum();
-    let error = Difference::between(&base.history, &finest.history).error() + left;
+    let left: f64 = climbed.iter().map(|ladder| ladder.finest).sum();
+    // The ladders are worth telling of even where their finest rungs together are too much.
+    let finest = solver.run(&advice::finest(&climbed))?;
+    let (advised, error) = match &finest {
+        Some(finest) => (
+            advice::advise(&mut solver, &climbed, (&base, finest), &targets)?,
+            Difference::between(&base.history, &finest.history).error() + left,
+        ),
+        None => (Vec::new(), f64::NAN),
+    };
     let findings = Findings { file, base, climbed, advised, error, left };
     let wrote = match &out {
         Some(out) if tells => findings.write(out),
         _ => Ok(()),
     };
     agree(world, wrote)?;
+    if chatty {
+        print!("{}", findings.table());
+    }
+    if finest.is_none() {
+        let reason =
+            "no convergence with the finest of all ladders together; give ladders that end before them, with --vary";
+        return Err(gave_up(reason));
+    }
     match (arguments.error, findings.advised.first()) {
         (Some(_), Some(Some(advice))) => {
             if tells {
@@ -106,9 +119,6 @@ fn climb(world: &SimpleCommunicator, arguments: &StudyArguments) -> Result<()> {
             findings.left
         ))),
         (None, _) => {
-            if tells {
-                print!("{}", findings.table());
-            }
             if let (true, Some(out)) = (tells, &out) {
                 println!("tables and figure: {}", out.display());
             }

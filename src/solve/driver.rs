@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::adapt::{self, Controller};
-use super::{Observer, Report, TransientProblem};
+use super::{Observer, Report, TransientProblem, Work};
 use crate::error::{Error, Result};
 use crate::loading::{Adaptive, Phase, SHORTEST, Target};
 use crate::petsc::{Accepted, Attempt, Implicit, Integrator, Judgement, Matrix, Next, Step, Vector, Verdict};
@@ -91,6 +91,8 @@ pub struct Counts {
     pub rejected: usize,
     /// Newton iterations, those of rejected attempts included.
     pub newton: usize,
+    /// What the problem did for it.
+    pub work: Work,
     /// Residuals and tangents.
     pub assembly: Duration,
     /// What the observer took.
@@ -134,7 +136,7 @@ impl<'a> Driver<'a> {
 
     /// What the run took so far.
     pub fn counts(&self) -> Counts {
-        self.counts
+        Counts { work: self.problem.work(), ..self.counts }
     }
 
     /// The next step, of length `dt`, and how often it may be cut.
