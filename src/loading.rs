@@ -80,7 +80,7 @@ pub struct Target {
 
 impl Adaptive {
     /// For a phase at whose beginning the indenter's velocity jumps by `jump`, m/s: the first step is as long as what the
-    /// jump displaces is allowed. Steps divide the phase into [`FEWEST`] at least, and half a cycle of a sinusoid into
+    /// jump displaces is allowed. Steps divide the phase into twelve at least, and half a cycle of a sinusoid into
     /// as many.
     pub fn new(phase: &Phase, allowed: f64, jump: f64) -> Self {
         let halves = match phase.motion {

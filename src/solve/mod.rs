@@ -45,7 +45,7 @@ pub trait TransientProblem {
     /// Judges a Newton iterate by the norm of its residual.
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
     /// How far `u`, at the end of a step from the accepted state, is from where the accepted rates would have taken the
-    /// face, m; see [`ContactFace::departure`](face::ContactFace::departure).
+    /// face, m.
     fn departure(&mut self, step: Step, u: &Vector) -> Result<f64>;
     /// Takes the accepted state to the end of an accepted step.
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()>;
