@@ -95,31 +95,38 @@ impl ContactFace {
         Ok(())
     }
 
-    /// Where Newton's method had better begin than at the accepted displacements: (face node, distance along x, m).
+    /// Where Newton's method had better begin than at the accepted displacements: what to add to them, m, for each node
+    /// of the face. What is behind the face need not be predicted, because it is linear.
     ///
-    /// Nodes that stuck go with the indenter at the slip rate they had, and those on which it turns back at none. From
-    /// the steep side of a regularised law Newton's method lets node after node slip; from the flat side, where the
-    /// accepted displacements are as soon as the indenter moves on, it does not find back. None where the indenter goes
-    /// so far in the step that all will slip anyway: ten times what the drag, f of the pressure, displaces by the
-    /// measure of what the pressure does.
-    pub fn carried(&self, step: Step) -> Result<Vec<(usize, f64)>> {
+    /// Within a phase the face goes on as it did. Nodes that stuck go with the indenter at the slip rate they had, and
+    /// those on which it turns back at none: from the steep side of a regularised law Newton's method lets node after
+    /// node slip; from the flat side, where the accepted displacements are as soon as the indenter moves on, it does
+    /// not find back. Not so where the indenter goes so far in the step that all will slip anyway: ten times what the
+    /// drag, f of the pressure, displaces by the measure of what the pressure does.
+    pub fn prediction(&self, step: Step) -> Result<Vec<Vector2<f64>>> {
         let Self { interface, accepted, free, .. } = self;
+        let phase = self.phase()?;
+        // A quarter of the step, against round-off: the one before was half as long or longer.
+        let goes_on = if step.t - 1.25 * step.dt > phase.start { step.dt } else { 0.0 };
+        let mut prediction: Vec<_> =
+            accepted.surface.rate.as_chunks().0.iter().map(|&[x, z]| Vector2::new(x, z) * goes_on).collect();
         if !interface.has_friction() {
-            return Ok(Vec::new());
+            return Ok(prediction);
         }
-        let rate = self.phase()?.placement(step.t, step.dt).sliding_rate;
+        let rate = phase.placement(step.t, step.dt).sliding_rate;
         let normal = accepted.surface.displacement.iter().skip(1).step_by(2);
         let deepest = normal.fold(0.0, |most: f64, u| most.max(u.abs()));
         if (rate * step.dt).abs() > 10.0 * interface.largest_drag() * deepest {
-            return Ok(Vec::new());
+            return Ok(prediction);
         }
         let fields = interface.fields(accepted.placement, &accepted.surface)?;
-        let carried = |(node, (&pressure, &slip)): (usize, (&f64, &f64))| {
+        for (node, (&pressure, &slip)) in fields.pressure.iter().zip(&fields.slip_rate).enumerate() {
             let turns = rate * slip < 0.0;
-            let moves = pressure > 0.0 && free[node].x > 0.0 && (turns || interface.grips(slip));
-            moves.then_some((node, (if turns { rate } else { rate - slip }) * step.dt))
-        };
-        Ok(fields.pressure.iter().zip(&fields.slip_rate).enumerate().filter_map(carried).collect())
+            if pressure > 0.0 && free[node].x > 0.0 && (turns || interface.grips(slip)) {
+                prediction[node].x = (if turns { rate } else { rate - slip }) * step.dt;
+            }
+        }
+        Ok(prediction)
     }
 
     /// The Euclidean norm of `residual`, N/m.

@@ -95,11 +95,12 @@ impl TransientProblem for Monolithic {
     }
 
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
-        let carried = self.face.carried(step)?;
+        let prediction = self.face.prediction(step)?;
         let mut values = u.view_mut()?;
-        for (node, distance) in carried {
-            if let (_, Some(row)) = self.rows[node] {
-                values[row] += distance;
+        for (increment, &(_, local)) in prediction.iter().zip(&self.rows) {
+            if let Some(row) = local {
+                values[row] += increment.x;
+                values[row + 1] += increment.y;
             }
         }
         Ok(())

@@ -181,10 +181,10 @@ impl<B: Backing> TransientProblem for Condensed<B> {
     }
 
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
-        let carried = self.face.carried(step)?;
-        let mut values = u.view_mut()?;
-        if !values.is_empty() {
-            carried.into_iter().for_each(|(node, distance)| values[2 * node] += distance);
+        let prediction = self.face.prediction(step)?;
+        // Only rank 0 has values.
+        for (value, increment) in u.view_mut()?.iter_mut().zip(prediction.iter().flatten()) {
+            *value += increment;
         }
         Ok(())
     }
