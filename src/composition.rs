@@ -1,5 +1,6 @@
 //! The composition root: the one place that matches on what a scene asks for and builds the parts for it.
 
+mod body;
 mod profile;
 
 use std::path::Path;
@@ -7,25 +8,24 @@ use std::path::Path;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
 
-use crate::bulk::{Arms, Bulk, Part, Series};
+use crate::bulk::{Arms, Bulk};
 use crate::element::mpjr::Quadrature;
-use crate::element::quad4;
 use crate::error::Result;
 use crate::friction::Friction;
 use crate::interface::{Interface, Laws};
 use crate::loading::{self, Motion, Phase};
-use crate::mesh::{Layer, Mesh, Sides};
+use crate::mesh::Mesh;
 use crate::parallel::{agree, share_numbers};
 use crate::petsc::{Linear, Matrix, Settings, Vector};
 use crate::profile::Profile;
-use crate::rheology::Memory;
-use crate::rheology::prony::{Prony, common_times};
-use crate::scene::{self, PoissonRule, Scene, When};
+use crate::scene::{self, Scene, When};
 use crate::solve::{
-    Backing, Body, Compliance, Condensed, Following, Interior, LARGE_FACE, Limits, Moduli, Monolithic, Relaxation,
-    Remembering, Source, TransientProblem,
+    Backing, Body, Compliance, Condensed, Following, Interior, LARGE_FACE, Limits, Monolithic, PeriodicColumn,
+    Relaxation, Remembering, Solid, Source, TransientProblem,
 };
 
+use body::Materials;
+pub use body::{Outline, Stretch, outline};
 pub use profile::{Finest, Shape, elevations, shape};
 
 /// A scene made ready to run.
@@ -49,18 +49,25 @@ pub struct Problem {
 pub fn build(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Problem> {
     // First what the scene may be refused for.
     let elevations = share_numbers(comm, || elevations(scene, file))?;
-    build_with_profile(comm, scene, shape(scene, file, &elevations)?.profile)
+    let mesh = body::mesh(comm, scene, file)?;
+    let profile = shape(scene, file, &elevations, Stretch::of(scene, &mesh.face))?.profile;
+    assemble(comm, scene, mesh, profile)
 }
 
 /// As [`build`], with another profile than the scene's.
 pub fn build_with_profile(comm: &SimpleCommunicator, scene: &Scene, profile: Box<dyn Profile>) -> Result<Problem> {
-    let mesh = layer(&scene.layer).mesh();
+    assemble(comm, scene, body::mesh(comm, scene, Path::new(""))?, profile)
+}
+
+fn assemble(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, profile: Box<dyn Profile>) -> Result<Problem> {
+    let materials = Materials::new(scene);
     let laws = Laws { profile, penalty: scene.contact.penalty, friction: scene.friction.as_ref().map(friction) };
     let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
+    let solid = Solid { mesh, quadrilateral: body::quadrilateral(scene), regions: materials.regions.clone() };
     match form(scene) {
-        Form::Monolithic => monolithic(comm, scene, mesh, interface),
-        Form::Following => following(comm, scene, mesh, interface),
-        Form::Remembering => remembering(comm, scene, mesh, interface),
+        Form::Monolithic => monolithic(comm, scene, (solid, materials), interface),
+        Form::Following => following(comm, scene, (solid, materials), interface),
+        Form::Remembering => remembering(comm, scene, (solid, materials), interface),
     }
 }
 
@@ -77,19 +84,23 @@ pub enum Form {
 
 /// How `scene` is solved: on its contact face unless it says otherwise.
 pub fn form(scene: &Scene) -> Form {
-    let follows = scene.material.is_elastic() || scene.material.poisson_rule == Some(PoissonRule::ConstantRatio);
     match scene.solver.strategy {
         scene::Strategy::Monolithic => Form::Monolithic,
-        scene::Strategy::Auto | scene::Strategy::Condensed if follows => Form::Following,
+        scene::Strategy::Auto | scene::Strategy::Condensed if Materials::new(scene).relax_alike() => Form::Following,
         scene::Strategy::Auto | scene::Strategy::Condensed => Form::Remembering,
     }
 }
 
-fn monolithic(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
-    let moduli = moduli(&scene.material);
-    let body = Body::new(comm.duplicate(), mesh.clone(), moduli)?;
+fn monolithic(
+    comm: &SimpleCommunicator,
+    scene: &Scene,
+    (solid, materials): (Solid, Materials),
+    interface: Interface,
+) -> Result<Problem> {
+    let mesh = solid.mesh.clone();
+    let body = Body::new(comm.duplicate(), solid)?;
     let u = body.vector()?;
-    let bulk = bulk(scene, &body, moduli, &u)?;
+    let bulk = materials.bulk(&body, &u)?;
     let mut tangent = bulk.new_tangent()?;
     tangent.set_near_null_space(&mut body.coordinates()?)?;
     let linear = if interface.has_friction() { Linear::Lu } else { Linear::Cholesky };
@@ -100,32 +111,37 @@ fn monolithic(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: I
     Ok(Problem { strategy, tangent, u, phases: phases(scene), settings: settings(linear), mesh })
 }
 
-fn following(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
-    let moduli = moduli(&scene.material);
-    let u = face_vector(comm, &mesh)?;
-    let mine = if comm.rank() == 0 { compliance(scene, &mesh, moduli).map(Some) } else { Ok(None) };
+fn following(
+    comm: &SimpleCommunicator,
+    scene: &Scene,
+    (solid, materials): (Solid, Materials),
+    interface: Interface,
+) -> Result<Problem> {
+    let u = face_vector(comm, &solid.mesh)?;
+    let mine = if comm.rank() == 0 { compliance(scene, &solid).map(Some) } else { Ok(None) };
     let compliance = agree(comm, mine)?;
     let mut softness = compliance.as_ref().map_or(0.0, Compliance::largest);
     comm.process_at_rank(0).broadcast_into(&mut softness);
-    let (series, times) = prony(&scene.material);
-    let relaxation = match series {
-        Some(series) => Some(Relaxation { arms: Arms::new(times, memory(&scene.material), &u)?, series }),
+    let mesh = solid.mesh.clone();
+    let Materials { series, times, memory, .. } = materials;
+    let relaxation = match series.into_iter().next().flatten() {
+        Some(series) => Some(Relaxation { arms: Arms::new(times, memory, &u)?, series }),
         None => None,
     };
-    let interior = Interior::new(comm, mesh.clone(), moduli);
+    let interior = Interior::new(comm, solid);
     let backing = Following { compliance, softness, relaxation, interior, secant: 1.0 };
     condensed(comm, scene, mesh, u, (interface, backing))
 }
 
-fn remembering(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, interface: Interface) -> Result<Problem> {
-    let moduli = moduli(&scene.material);
-    let whole = if comm.rank() == 0 { whole_body(scene, &mesh, moduli).map(Some) } else { Ok(None) };
-    let source = match scene.layer.sides {
-        scene::Sides::Periodic => {
-            Source::Periodic { cells: column(scene, &mesh), columns: scene.layer.cells[0], moduli }
-        }
-        _ => Source::Schur,
-    };
+fn remembering(
+    comm: &SimpleCommunicator,
+    scene: &Scene,
+    (solid, materials): (Solid, Materials),
+    interface: Interface,
+) -> Result<Problem> {
+    let whole = if comm.rank() == 0 { whole_body(&solid, &materials).map(Some) } else { Ok(None) };
+    let source = periodic_column(scene, &solid).map_or(Source::Schur, Source::Periodic);
+    let mesh = solid.mesh;
     let backing = Remembering::new(comm, agree(comm, whole)?, source)?;
     let u = face_vector(comm, &mesh)?;
     condensed(comm, scene, mesh, u, (interface, backing))
@@ -151,83 +167,29 @@ fn face_vector(comm: &SimpleCommunicator, mesh: &Mesh) -> Result<Vector> {
 }
 
 /// The compliance of the face, by this rank alone.
-fn compliance(scene: &Scene, mesh: &Mesh, moduli: Moduli) -> Result<Compliance> {
-    if scene.layer.sides == scene::Sides::Periodic {
-        let cells: Vec<_> = column(scene, mesh).iter().map(|split| moduli.stiffness(split)).collect();
-        return Ok(Compliance::of_periodic_columns(&cells, scene.layer.cells[0]));
+fn compliance(scene: &Scene, solid: &Solid) -> Result<Compliance> {
+    match periodic_column(scene, solid) {
+        Some(column) => Ok(Compliance::of_periodic_columns(&column.stiffness(&[1.0]), column.columns)),
+        None => Compliance::by_schur_complement(&Body::new(SimpleCommunicator::self_comm(), solid.clone())?),
     }
-    Compliance::by_schur_complement(&Body::new(SimpleCommunicator::self_comm(), mesh.clone(), moduli)?, moduli)
 }
 
 /// The whole body with its memory, on this rank alone.
-fn whole_body(scene: &Scene, mesh: &Mesh, moduli: Moduli) -> Result<(Bulk, Body)> {
-    let body = Body::new(SimpleCommunicator::self_comm(), mesh.clone(), moduli)?;
-    let bulk = bulk(scene, &body, moduli, &body.vector()?)?;
+fn whole_body(solid: &Solid, materials: &Materials) -> Result<(Bulk, Body)> {
+    let body = Body::new(SimpleCommunicator::self_comm(), solid.clone())?;
+    let bulk = materials.bulk(&body, &body.vector()?)?;
     Ok((bulk, body))
 }
 
-/// The cells of one column of the layer, from the top down.
-fn column(scene: &Scene, mesh: &Mesh) -> Vec<quad4::Split> {
-    (0..scene.layer.cells[1]).map(|cell| quad4::stiffness(&mesh.corners(cell))).collect()
+/// One column of a periodic layer; none for any other body.
+fn periodic_column(scene: &Scene, solid: &Solid) -> Option<PeriodicColumn> {
+    let layer = scene.layer().filter(|layer| layer.sides == scene::Sides::Periodic)?;
+    Some(PeriodicColumn::new(solid, layer.cells))
 }
 
 fn settings(linear: Linear) -> Settings {
     let Limits { max_newton, max_cuts } = Limits::default();
     Settings { linear, max_newton, max_cuts }
-}
-
-fn layer(layer: &scene::Layer) -> Layer {
-    let sides = match layer.sides {
-        scene::Sides::Periodic => Sides::Periodic,
-        scene::Sides::Free => Sides::Free,
-        scene::Sides::Roller => Sides::Roller,
-        scene::Sides::Fixed => Sides::Fixed,
-    };
-    Layer { width: layer.width, depth: layer.depth, cells: layer.cells, grading: layer.grading, sides }
-}
-
-/// K = 2 G (1 + nu) / (3 (1 - 2 nu)), instantaneous.
-fn moduli(material: &scene::Material) -> Moduli {
-    let (g, nu) = (material.shear_modulus, material.poisson_ratio);
-    Moduli { shear: g, bulk: 2.0 * g * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu)) }
-}
-
-/// One part where shear and bulk modulus relax together (or not at all), two where each goes its own way.
-fn bulk(scene: &Scene, body: &Body, moduli: Moduli, layout: &Vector) -> Result<Bulk> {
-    let material = &scene.material;
-    let (shear, bulk) = (material.shear_series(), material.bulk_series());
-    let times = common_times(&[&shear, &bulk]);
-    let part = |moduli, diagonal, prony: &Prony| {
-        Ok(Part { stiffness: body.stiffness(moduli, diagonal)?, series: series(prony, &times) })
-    };
-    let parts = if shear == bulk {
-        vec![part(moduli, moduli.shear, &shear)?]
-    } else {
-        vec![
-            part(Moduli { bulk: 0.0, ..moduli }, moduli.shear, &shear)?,
-            part(Moduli { shear: 0.0, ..moduli }, 0.0, &bulk)?,
-        ]
-    };
-    Bulk::new(parts, times, memory(material), layout)
-}
-
-/// The Prony series of the shear modulus and its relaxation times, s; no series for an elastic material.
-fn prony(material: &scene::Material) -> (Option<Series>, Vec<f64>) {
-    let prony = material.shear_series();
-    let times = common_times(&[&prony]);
-    (series(&prony, &times), times)
-}
-
-/// A series over a list of relaxation times, s; none where nothing relaxes.
-fn series(prony: &Prony, times: &[f64]) -> Option<Series> {
-    (!prony.arms.is_empty()).then(|| Series { long_term: prony.long_term(), weights: prony.weights_over(times) })
-}
-
-fn memory(material: &scene::Material) -> Memory {
-    match material.memory {
-        scene::Memory::Exponential => Memory::Exponential,
-        scene::Memory::BackwardEuler => Memory::BackwardEuler,
-    }
 }
 
 fn friction(friction: &scene::Friction) -> Friction {

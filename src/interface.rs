@@ -7,7 +7,7 @@ mod oscillation;
 
 use nalgebra::{Matrix2, Vector2};
 
-use crate::element::mpjr::{self, Motion, Quadrature, Traction};
+use crate::element::mpjr::{self, Frame, Motion, Over, Quadrature, Traction, Under};
 use crate::error::Result;
 use crate::friction::Friction;
 use crate::loading::Placement;
@@ -53,6 +53,9 @@ struct Point {
     weight: f64,
     /// m
     x: f64,
+    /// How far below the highest node of the face, m.
+    recess: f64,
+    frame: Frame,
 }
 
 /// The residual of the face, internal minus external, N/m, per node: (x, z).
@@ -70,9 +73,10 @@ pub struct Tangent {
 /// Integrals over the contact face.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Totals {
-    /// integral of p, N/m, compression positive.
+    /// integral of (p n_z - q t_z), N/m: the vertical force, compression positive; on a flat face, of p.
     pub normal_force: f64,
-    /// integral of q, N/m, on the layer, positive along +x.
+    /// integral of q t_x, N/m, on the layer, positive along +x. The horizontal part of the pressure on a curved face
+    /// (-p n_x), like that on the profile's slope, is not in it.
     pub tangential_force: f64,
     /// integral of p dh/dx, N/m.
     pub hysteretic_force: f64,
@@ -86,7 +90,7 @@ pub struct Totals {
     pub traction_oscillation: f64,
 }
 
-/// Fields at the face's nodes.
+/// Fields at the face's nodes, in the frames of the elements; at a node between elements of two directions, the mean.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Fields {
     /// p, Pa, positive in compression.
@@ -105,12 +109,11 @@ impl Surface {
         Self { displacement: vec![0.0; 2 * nodes], rate: vec![0.0; 2 * nodes] }
     }
 
-    /// The motion interpolated between two nodes: (u_x, u_z, du_x/dt).
-    fn at(&self, nodes: [usize; 2], shape: [f64; 2]) -> (f64, f64, f64) {
-        let mix = |values: &[f64], component: usize| {
-            shape[0] * values[2 * nodes[0] + component] + shape[1] * values[2 * nodes[1] + component]
-        };
-        (mix(&self.displacement, 0), mix(&self.displacement, 1), mix(&self.rate, 0))
+    /// The motion interpolated between two nodes.
+    fn at(&self, nodes: [usize; 2], shape: [f64; 2]) -> Under {
+        let at = |values: &[f64], node: usize| Vector2::new(values[2 * node], values[2 * node + 1]);
+        let mix = |values: &[f64]| at(values, nodes[0]) * shape[0] + at(values, nodes[1]) * shape[1];
+        Under { displacement: mix(&self.displacement), rate: mix(&self.rate) }
     }
 }
 
@@ -127,7 +130,9 @@ impl Interface {
                         nodes: edge.ends,
                         shape: point.shape,
                         weight: point.weight,
-                        x: edge.start + point.shape[1] * edge.length,
+                        x: edge.start + point.shape[1] * edge.length * edge.tangent.x,
+                        recess: point.shape[0] * face.recess[edge.ends[0]] + point.shape[1] * face.recess[edge.ends[1]],
+                        frame: mpjr::frame(edge.tangent),
                     })
                 })
                 .collect(),
@@ -167,6 +172,7 @@ impl Interface {
         out.resize(self.face.x.len(), Vector2::zeros());
         for (point, elevation) in self.points.iter().zip(&self.elevations) {
             let force = self.traction(point, elevation, placement, surface).residual() * point.weight;
+            let force = point.frame.tr_mul(&force);
             for (node, shape) in point.nodes.iter().zip(point.shape) {
                 out[*node] += force * shape;
             }
@@ -188,6 +194,7 @@ impl Interface {
         }
         for (i, (point, elevation)) in self.points.iter().zip(&self.elevations).enumerate() {
             let block = self.traction(point, elevation, placement, surface).tangent(shift) * point.weight;
+            let block = point.frame.tr_mul(&block) * point.frame;
             let ([a, b], [na, nb]) = (point.nodes, point.shape);
             out.diagonal[a] += block * (na * na);
             if !self.nodal {
@@ -209,14 +216,14 @@ impl Interface {
         self.place(placement)?;
         let mut totals = Totals::default();
         let (mut length, mut contact, mut stick) = (0.0, 0.0, 0.0);
-        let mut tractions = Vec::with_capacity(self.face.x.len());
         for (point, elevation) in self.points.iter().zip(&self.elevations) {
             let motion = motion(point, elevation, placement, surface);
             let traction = mpjr::traction(motion, self.laws.penalty, self.laws.friction.as_ref());
-            tractions.push(Vector2::new(traction.shear, traction.pressure));
-            totals.normal_force += point.weight * traction.pressure;
-            totals.tangential_force += point.weight * traction.shear;
-            totals.hysteretic_force += point.weight * traction.pressure * elevation.slope;
+            let force = point.frame.tr_mul(&traction.residual());
+            let dx = point.weight * point.frame[(0, 0)];
+            totals.normal_force += point.weight * force.y;
+            totals.tangential_force += dx * traction.shear;
+            totals.hysteretic_force += dx * traction.pressure * elevation.slope;
             totals.max_penetration = totals.max_penetration.max(motion.normal - motion.clearance);
             length += point.weight;
             if traction.pressure > 0.0 {
@@ -228,10 +235,8 @@ impl Interface {
         }
         totals.contact_fraction = contact / length;
         totals.stick_fraction = if contact > 0.0 { stick / contact } else { 0.0 };
-        if !self.nodal {
-            let Fields { pressure, shear, .. } = self.fields(placement, surface)?;
-            tractions = shear.into_iter().zip(pressure).map(|(q, p)| Vector2::new(q, p)).collect();
-        }
+        let Fields { pressure, shear, .. } = self.fields(placement, surface)?;
+        let tractions: Vec<_> = shear.into_iter().zip(pressure).map(|(q, p)| Vector2::new(q, p)).collect();
         totals.traction_oscillation = oscillation::oscillation(&self.face.edges, &tractions);
         Ok(totals)
     }
@@ -241,16 +246,24 @@ impl Interface {
     /// # Errors
     /// As for [`Self::residual`].
     pub fn fields(&self, placement: Placement, surface: &Surface) -> Result<Fields> {
-        let mut fields = Fields::default();
-        for (node, &x) in self.face.x.iter().enumerate() {
-            let point = Point { nodes: [node, node], shape: [1.0, 0.0], weight: 1.0, x };
-            let elevation = self.laws.profile.at(x - placement.sliding)?;
-            let motion = motion(&point, &elevation, placement, surface);
+        let nodes = self.face.x.len();
+        let zeros = || vec![0.0; nodes];
+        let mut fields = Fields { pressure: zeros(), shear: zeros(), gap: zeros(), slip_rate: zeros() };
+        let points = lumped_points(&self.face);
+        let mut length = zeros();
+        for point in &points {
+            length[point.nodes[0]] += point.weight;
+        }
+        for point in &points {
+            let node = point.nodes[0];
+            let share = point.weight / length[node];
+            let elevation = self.laws.profile.at(point.x - placement.sliding)?;
+            let motion = motion(point, &elevation, placement, surface);
             let traction = mpjr::traction(motion, self.laws.penalty, self.laws.friction.as_ref());
-            fields.pressure.push(traction.pressure);
-            fields.shear.push(traction.shear);
-            fields.gap.push(motion.clearance - motion.normal);
-            fields.slip_rate.push(motion.slip_rate);
+            fields.pressure[node] += share * traction.pressure;
+            fields.shear[node] += share * traction.shear;
+            fields.gap[node] += share * (motion.clearance - motion.normal);
+            fields.slip_rate[node] += share * motion.slip_rate;
         }
         Ok(fields)
     }
@@ -259,9 +272,9 @@ impl Interface {
     /// is the gap.
     pub fn noise(&self, placement: Placement, surface: &Surface) -> f64 {
         let square = |(point, elevation): (&Point, &Elevation)| {
-            let (_, uz, _) = surface.at(point.nodes, point.shape);
-            let length =
-                uz.abs().max(placement.approach.abs()).max(elevation.height.min(2.0 * placement.approach.abs()));
+            let motion = (point.frame * surface.at(point.nodes, point.shape).displacement).y.abs();
+            let height = elevation.height + point.recess;
+            let length = motion.max(placement.approach.abs()).max(height.min(2.0 * placement.approach.abs()));
             (point.weight * length).powi(2)
         };
         let sum: f64 = self.points.iter().zip(&self.elevations).map(square).sum();
@@ -287,96 +300,43 @@ impl Interface {
     }
 }
 
-/// The relative motion at a point of the flat face: t = x, n = z.
+/// The relative motion at a point of the face.
 fn motion(point: &Point, elevation: &Elevation, placement: Placement, surface: &Surface) -> Motion {
-    let (_, normal, rate) = surface.at(point.nodes, point.shape);
-    Motion { clearance: elevation.height - placement.approach, normal, slip_rate: placement.sliding_rate - rate }
+    let over = Over {
+        clearance: elevation.height - placement.approach + point.recess,
+        velocity: Vector2::new(placement.sliding_rate, -placement.approach_rate),
+    };
+    Motion::new(&point.frame, over, surface.at(point.nodes, point.shape))
 }
 
-/// Nodal quadrature: one point per node with half of each adjoining edge.
+/// Nodal quadrature: half of each edge at either end; the two halves at a node are one point where the edges have one
+/// direction.
 fn lumped_points(face: &Face) -> Vec<Point> {
-    let mut points: Vec<Point> = (0..face.x.len())
-        .map(|node| Point { nodes: [node, node], shape: [1.0, 0.0], weight: 0.0, x: face.x[node] })
-        .collect();
+    let mut points: Vec<Point> = Vec::with_capacity(face.x.len());
+    // The first point of each node.
+    let mut first = vec![usize::MAX; face.x.len()];
     for edge in &face.edges {
-        for (end, point) in edge.ends.iter().zip(Quadrature::Nodal.points(edge.length)) {
-            points[*end].weight += point.weight;
+        let frame = mpjr::frame(edge.tangent);
+        for (&node, half) in edge.ends.iter().zip(Quadrature::Nodal.points(edge.length)) {
+            match points.get_mut(first[node]) {
+                Some(point) if point.frame == frame => point.weight += half.weight,
+                _ => {
+                    first[node] = first[node].min(points.len());
+                    let (x, recess) = (face.x[node], face.recess[node]);
+                    points.push(Point {
+                        nodes: [node, node],
+                        shape: [1.0, 0.0],
+                        weight: half.weight,
+                        x,
+                        recess,
+                        frame,
+                    });
+                }
+            }
         }
     }
     points
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
-mod tests {
-    use super::*;
-    use crate::mesh::{Layer, Sides};
-    use crate::profile::Harmonic;
-
-    fn interface(quadrature: Quadrature, sides: Sides) -> Interface {
-        let layer = Layer { width: 1.0, depth: 1.0, cells: [8, 1], grading: 1.0, sides };
-        let profile = Box::new(Harmonic { amplitude: 0.01, wavelength: 1.0 });
-        let friction = Some(Friction::coulomb_tanh(0.3, 0.02));
-        Interface::new(layer.mesh().face, Laws { profile, penalty: 50.0, friction }, quadrature)
-    }
-
-    fn placement() -> Placement {
-        Placement { approach: 0.012, sliding: 0.13, sliding_rate: 0.05 }
-    }
-
-    /// A wavy surface whose rates follow its displacements at `shift`.
-    fn surface(nodes: usize, shift: f64, perturb: (usize, f64)) -> Surface {
-        let mut displacement: Vec<f64> = (0..2 * nodes).map(|i| 1e-3 * (1.7 * i as f64).sin()).collect();
-        displacement[perturb.0] += perturb.1;
-        let rate = displacement.iter().map(|u| shift * u).collect();
-        Surface { displacement, rate }
-    }
-
-    /// The whole face's tangent against central differences, for both rules, on open and closed faces.
-    #[test]
-    fn tangent_is_the_derivative_of_the_residual() {
-        for (quadrature, sides) in
-            [(Quadrature::Nodal, Sides::Free), (Quadrature::Gauss, Sides::Free), (Quadrature::Gauss, Sides::Periodic)]
-        {
-            let mut interface = interface(quadrature, sides);
-            let (nodes, shift, step) = (interface.face.x.len(), 10.0, 1e-7);
-            let mut tangent = Tangent::default();
-            interface.tangent(placement(), &surface(nodes, shift, (0, 0.0)), shift, &mut tangent).unwrap();
-            let mut dense = nalgebra::DMatrix::<f64>::zeros(2 * nodes, 2 * nodes);
-            for (node, block) in tangent.diagonal.iter().enumerate() {
-                dense.view_mut((2 * node, 2 * node), (2, 2)).copy_from(block);
-            }
-            for (edge, [forward, backward]) in interface.face.edges.clone().iter().zip(&tangent.coupling) {
-                let [a, b] = edge.ends;
-                dense.view_mut((2 * a, 2 * b), (2, 2)).copy_from(forward);
-                dense.view_mut((2 * b, 2 * a), (2, 2)).copy_from(backward);
-            }
-            for column in 0..2 * nodes {
-                let mut at = |h: f64| {
-                    let mut out = Residual::new();
-                    interface.residual(placement(), &surface(nodes, shift, (column, h)), &mut out).unwrap();
-                    out
-                };
-                let (plus, minus) = (at(step), at(-step));
-                for row in 0..2 * nodes {
-                    let numeric = (plus[row / 2][row % 2] - minus[row / 2][row % 2]) / (2.0 * step);
-                    assert!((numeric - dense[(row, column)]).abs() < 1e-6, "{row} {column}");
-                }
-            }
-        }
-    }
-
-    /// Both rules give the exact force of a linear pressure over the face in full contact.
-    #[test]
-    fn totals_integrate_the_tractions() {
-        for quadrature in [Quadrature::Nodal, Quadrature::Gauss] {
-            let mut interface = interface(quadrature, Sides::Periodic);
-            let place = Placement { approach: 0.1, sliding: 0.0, sliding_rate: 1e3 };
-            let totals = interface.totals(place, &Surface::at_rest(8)).unwrap();
-            // p = alpha (D - g0 (1 - cos)), whose mean is alpha (D - g0).
-            assert!((totals.normal_force - 50.0 * 0.09).abs() < 1e-13);
-            assert!((totals.tangential_force - 0.3 * 50.0 * 0.09).abs() < 1e-13);
-            assert_eq!((totals.contact_fraction, totals.stick_fraction), (1.0, 0.0));
-        }
-    }
-}
+mod tests;

@@ -11,6 +11,8 @@ pub struct Placement {
     pub sliding: f64,
     /// (s(t) - s(t - dt)) / dt, m/s: the rate that backward Euler sees.
     pub sliding_rate: f64,
+    /// (D(t) - D(t - dt)) / dt, m/s.
+    pub approach_rate: f64,
 }
 
 /// Tangential motion of one phase, relative to where the phase found the indenter.
@@ -69,8 +71,11 @@ impl Phase {
         let local = t - self.start;
         let fraction = (local / self.duration).min(1.0);
         let approach = from + (to - from) * fraction;
+        let approach_rate = (to - from) / self.duration;
         match self.motion {
-            Motion::Velocity(v) => Placement { approach, sliding: self.sliding + v * local, sliding_rate: v },
+            Motion::Velocity(v) => {
+                Placement { approach, sliding: self.sliding + v * local, sliding_rate: v, approach_rate }
+            }
             Motion::Sinusoid { amplitude, cycles } => {
                 let angular = 2.0 * PI * cycles / self.duration;
                 // sin a - sin b = 2 cos((a + b)/2) sin((a - b)/2) keeps the digits of short steps.
@@ -80,6 +85,7 @@ impl Phase {
                     approach,
                     sliding: self.sliding + amplitude * (angular * local).sin(),
                     sliding_rate: amplitude * 2.0 * middle * half.sin() / dt,
+                    approach_rate,
                 }
             }
         }

@@ -16,7 +16,8 @@ fn each_bad_scene_gives_its_message() {
         // What `mpjr check` does: the scene, then what it needs of other files.
         let checked = read(&scene.text, &source).and_then(|read| {
             let elevations = composition::elevations(&read, &scene.file)?;
-            composition::shape(&read, &scene.file, &elevations).map(|_| ())
+            let outline = composition::outline(&read, &scene.file)?;
+            composition::shape(&read, &scene.file, &elevations, outline.face).map(|_| ())
         });
         let (message, exit) = match checked {
             Ok(_) => ("(accepted)".to_owned(), 0),

@@ -5,7 +5,7 @@ mod common;
 
 use std::path::Path;
 
-use mpjr::composition::{elevations, shape};
+use mpjr::composition::{elevations, outline, shape};
 use mpjr::oracle::{Layer, Moduli};
 use mpjr::output::reader::Results;
 use mpjr::profile::Profile;
@@ -127,10 +127,11 @@ fn nodes_on_sampling_points_have_the_file_s_numbers() {
         text = text.replace("width = 1.0", &format!("width = {:?}", f64::from(cells) / 48.0));
         text += &format!("profile = \"sampled\"\nfile = \"wave.txt\"\nextend = {extend:?}\n");
         let scene = read(&text, &Source { file: file.clone(), overrides: vec![] }).unwrap();
-        let profile = shape(&scene, &file, &elevations(&scene, &file).unwrap()).unwrap().profile;
+        let face = outline(&scene, &file).unwrap().face;
+        let profile = shape(&scene, &file, &elevations(&scene, &file).unwrap(), face).unwrap().profile;
         for (k, height) in heights.iter().enumerate() {
             // As the mesh has its nodes.
-            let x = scene.layer.width * k as f64 / f64::from(cells);
+            let x = scene.layer().unwrap().width * k as f64 / f64::from(cells);
             assert_eq!(profile.at(x).unwrap().height, *height, "{sides} {k}");
         }
     }
@@ -159,13 +160,13 @@ fn a_tolerance_bounds_the_added_compliance() {
             let file = Path::new("scene.toml").to_owned();
             let scene = read(&(SCENE.to_owned() + HARMONIC), &Source { file, overrides: set.to_vec() }).unwrap();
             let layer = Layer { depth };
-            let moduli = Moduli { shear: scene.material.shear_modulus.into(), poisson: ratio.into() };
+            let moduli = Moduli { shear: scene.materials[0].shear_modulus.into(), poisson: ratio.into() };
             // From no wave to the wave of two cells.
             let wave = |j: usize| std::f64::consts::PI * 32.0 * j as f64 / 3200.0;
             let added = (0..=3200).map(|j| 1.0 / (scene.contact.penalty * layer.compliance(wave(j), moduli).zz.re));
             let most = added.fold(0.0, f64::max);
             assert!((0.99e-2..1.02e-2).contains(&most), "{ratio} {depth}: {most:e}");
-            let said = added_compliance(scene.contact.penalty, &scene.layer, &scene.material);
+            let said = added_compliance(scene.contact.penalty, scene.layer().unwrap(), &scene.materials);
             assert!((said / 1e-2 - 1.0).abs() < 1e-12);
         }
     }

@@ -56,10 +56,16 @@ fn load(file: &Path) -> Result<String> {
     }
 }
 
+/// The one material of a scene.
+fn only(scene: Scene) -> Material {
+    let [material] = scene.materials.try_into().unwrap();
+    material
+}
+
 fn material_from(overrides: &[&str]) -> Result<Material> {
     let overrides = overrides.iter().map(|text| text.to_string()).collect();
     let source = Source { file: PathBuf::from("dir/smallest.toml"), overrides };
-    read_with(SMALLEST, &source, &load).map(|scene| scene.material)
+    read_with(SMALLEST, &source, &load).map(only)
 }
 
 #[test]
@@ -100,10 +106,10 @@ fn a_table_takes_a_material_file() {
     let mut table = parse(SMALLEST, &file).unwrap();
     let material = parse("file = \"data/eva-one-arm.toml\"", &file).unwrap();
     set(&mut table, "material", material.into(), &file).unwrap();
-    assert_eq!(from_table(&table, &file).unwrap().material.shear_modulus, 568.498);
+    assert_eq!(only(from_table(&table, &file).unwrap()).shear_modulus, 568.498);
     include(&mut table, &file, &open).unwrap();
     set(&mut table, "material.arms.0.time", 2.0.into(), &file).unwrap();
-    assert_eq!(from_table(&table, &file).unwrap().material.arms[0].time, 2.0);
+    assert_eq!(only(from_table(&table, &file).unwrap()).arms[0].time, 2.0);
 }
 
 #[test]
@@ -112,17 +118,17 @@ fn what_a_fractional_material_becomes_is_read_back() {
                       poisson_rule = \"constant_bulk_modulus\", shift = \"wlf\", c1 = 17.44, c2 = 51.6, \
                       reference_temperature = 290, temperature = 291 }";
     let scene = read_set(SMALLEST, &[fractional]).unwrap();
-    assert_eq!(scene.material.arms.len(), 4);
-    assert_eq!(scene.material.notes.len(), 2);
+    assert_eq!(scene.materials[0].arms.len(), 4);
+    assert_eq!(scene.materials[0].notes.len(), 2);
     assert_round_trip(&scene);
     // Steps of 0.5 s to 4 s in all, and where one step is all there is, a decade.
     assert_eq!(scene.band().map(|band| (band.from, band.to)), Some((0.4, 4.0)));
     // Hotter, the power law is lower by a_T^order at equal times, and so is its series.
-    let cold = read_set(SMALLEST, &[fractional, "material.temperature=290"]).unwrap().material;
+    let cold = read_set(SMALLEST, &[fractional, "material.temperature=290"]).unwrap();
     let at = |material: &Material, t: f64| material.shear_modulus * material.shear_series().relaxation(t);
     let factor = 10f64.powf(-17.44 / 52.6);
     for t in [0.5, 1.0, 4.0] {
-        let ratio = at(&scene.material, t) / at(&cold, t);
+        let ratio = at(&scene.materials[0], t) / at(&cold.materials[0], t);
         assert!((ratio / factor.powf(0.226) - 1.0).abs() < 1e-4, "{ratio}");
     }
 }

@@ -44,14 +44,19 @@ fn error_at(result: Result<Scene>) -> String {
     }
 }
 
+fn layer(scene: &Scene) -> &Layer {
+    scene.layer().expect("a layer")
+}
+
 #[test]
 fn what_may_be_absent_has_its_default() {
     let scene = read_set(SMALLEST, &[]).unwrap();
     assert_eq!(scene.title, "smallest");
-    assert_eq!(scene.layer.grading, 1.0);
-    assert!((scene.material.shear_modulus - 1.0).abs() < 1e-15);
-    assert_eq!((scene.material.arms.len(), scene.material.poisson_rule), (0, None));
-    assert_eq!(scene.material.memory, Memory::Exponential);
+    assert_eq!((layer(&scene).grading, layer(&scene).element), (1.0, Element::Quad4));
+    let [material] = scene.materials.as_slice() else { panic!("one material") };
+    assert!((material.shear_modulus - 1.0).abs() < 1e-15);
+    assert_eq!((material.arms.len(), material.poisson_rule), (0, None));
+    assert_eq!((material.memory, &material.region, material.thickness), (Memory::Exponential, &None, None));
     assert_eq!(scene.contact.quadrature, Quadrature::Nodal);
     assert_eq!(scene.friction, None);
     assert_eq!(scene.solver, Solver { strategy: Strategy::Auto, tolerance: 1e-8 });
@@ -68,17 +73,17 @@ fn the_paper_s_scene_is_read_as_written() {
     let file = common::directory("runs/eva-one-arm.toml");
     let text = std::fs::read_to_string(&file).unwrap();
     let scene = read(&text, &Source { file, overrides: vec![] }).unwrap();
-    assert_eq!(scene.layer.sides, Sides::Periodic);
-    assert_eq!(scene.layer.cells, [128, 128]);
-    assert_eq!(scene.material.arms, [Arm { weight: 0.579, time: 0.817 }]);
-    assert_eq!(scene.material.poisson_rule, Some(PoissonRule::ConstantRatio));
+    assert_eq!(layer(&scene).sides, Sides::Periodic);
+    assert_eq!(layer(&scene).cells, [128, 128]);
+    assert_eq!(scene.materials[0].arms, [Arm { weight: 0.579, time: 0.817 }]);
+    assert_eq!(scene.materials[0].poisson_rule, Some(PoissonRule::ConstantRatio));
     assert_eq!(scene.indenter, Indenter::Harmonic { amplitude: 5e-4, wavelength: 1.0 });
     assert_eq!(scene.friction, Some(Friction::CoulombTanh { coefficient: 0.2, regularisation: 2.154e-4 }));
     assert_eq!(scene.phases[0].approach, Some(1e-3));
     assert_eq!(scene.phases[1].duration, 2.0 / 0.02154);
     assert_eq!(scene.duration(), 10.0 + 2.0 / 0.02154);
     assert_eq!(scene.steps(), 450);
-    assert_eq!(scene.unknowns(), 2 * 128 * 128);
+    assert_eq!(layer(&scene).unknowns(), 2 * 128 * 128);
     assert_eq!(scene.output.bulk_at, ["indent", "slide"].map(|name| When::PhaseEnd(name.to_owned())));
 }
 
@@ -96,14 +101,14 @@ fn a_tolerance_is_a_penalty() {
     let set = [tolerance, "material={ shear_modulus = 1, poisson_ratio = 0.49 }"];
     assert!((penalty(&set) * 1e-2 * 0.02 / 1.02 - 1.0).abs() < 1e-12);
     let scene = read_set(SMALLEST, &set).unwrap();
-    assert!((added_compliance(scene.contact.penalty, &scene.layer, &scene.material) - 1e-2).abs() < 1e-15);
+    assert!((added_compliance(scene.contact.penalty, layer(&scene), &scene.materials) - 1e-2).abs() < 1e-15);
 }
 
 #[test]
 fn unknowns_are_the_displacements_that_nothing_holds() {
     for (sides, unknowns) in [("free", 30), ("roller", 24), ("fixed", 18), ("periodic", 24)] {
         let scene = read_set(SMALLEST, &[&format!("layer.sides={sides}")]).unwrap();
-        assert_eq!(scene.unknowns(), unknowns, "{sides}");
+        assert_eq!(layer(&scene).unknowns(), unknowns, "{sides}");
     }
 }
 
@@ -126,8 +131,8 @@ fn overrides_are_applied_in_order_by_name_and_by_index() {
     )
     .unwrap();
     assert_eq!(scene.title, "two words");
-    assert_eq!(scene.layer.cells, [4, 7]);
-    assert_eq!((scene.layer.sides, scene.layer.grading), (Sides::Roller, 3.0));
+    assert_eq!(layer(&scene).cells, [4, 7]);
+    assert_eq!((layer(&scene).sides, layer(&scene).grading), (Sides::Roller, 3.0));
     assert_eq!(scene.solver.tolerance, 1e-6);
     assert_eq!((scene.phases[1].name.as_str(), scene.phases[1].motion), ("fast, 1.5 m/s", Motion::Velocity(1.5)));
     assert_eq!(scene.phases[0].steps, 9);
@@ -140,14 +145,14 @@ fn a_whole_table_can_be_set() {
     let mut table = parse(SMALLEST, &file).unwrap();
     let material = parse("shear_modulus = 3.0\npoisson_ratio = 0.0", &file).unwrap();
     set(&mut table, "material", material.into(), &file).unwrap();
-    assert_eq!(from_table(&table, &file).unwrap().material.shear_modulus, 3.0);
+    assert_eq!(from_table(&table, &file).unwrap().materials[0].shear_modulus, 3.0);
 }
 
 /// Each key, set to what it cannot be, is the key of the error: none is known but not looked at.
 #[test]
 fn no_key_is_ignored() {
     let parabola = [
-        "title layer.width layer.depth layer.cells layer.grading layer.sides",
+        "title layer.width layer.depth layer.cells layer.grading layer.sides layer.element",
         "material.shear_modulus material.young_modulus material.poisson_ratio material.arms material.poisson_rule",
         "material.memory material.file material.fractional material.bulk_arms material.shift material.notes",
         "material.temperature material.reference_temperature material.c1 material.c2 material.activation_energy",
@@ -270,13 +275,9 @@ impl Random {
     }
 
     fn scene(&mut self) -> Scene {
-        let arms = self.below(4);
         let wavelength = self.positive();
         let count = 1 + self.below(4) as usize;
         let phases: Vec<Phase> = (0..count).map(|index| self.phase(index)).collect();
-        let poisson_rule =
-            self.of(&[PoissonRule::ConstantRatio, PoissonRule::ConstantBulkModulus, PoissonRule::BulkArms]);
-        let bulk_arms = if poisson_rule == PoissonRule::BulkArms { 1 + self.below(3) } else { 0 };
         let radius = self.positive();
         let centre = self.unit() - 0.5;
         let [hurst, seed] = [self.unit(), self.unit()];
@@ -287,24 +288,12 @@ impl Random {
             Friction::CoulombTanh { coefficient: 10.0 * self.unit(), regularisation: 1e-12 * self.positive() };
         let ends = phases.iter().take(2).map(|phase| When::PhaseEnd(phase.name.clone()));
         let times = [When::Time(phases[0].duration * self.unit())];
+        let body = if self.below(4) == 0 { self.mesh_file() } else { self.layer(wavelength) };
+        let materials = self.materials(&body);
         Scene {
             title: self.of(&["", "plain", "é \"quoted\" \\ # = [layer]", "'''"]).to_owned(),
-            layer: Layer {
-                width: wavelength * (1 + self.below(9)) as f64,
-                depth: self.positive(),
-                cells: [2 + self.below(300) as usize, 1 + self.below(300) as usize],
-                grading: self.positive(),
-                sides: self.of(&[Sides::Periodic, Sides::Free, Sides::Roller, Sides::Fixed]),
-            },
-            material: Material {
-                shear_modulus: 1e9 * self.positive(),
-                poisson_ratio: 1.4 * self.unit() - 0.9,
-                arms: self.arms(arms),
-                poisson_rule: Some(poisson_rule),
-                bulk_arms: self.arms(bulk_arms),
-                notes: self.of(&[vec![], vec!["read from \"a\"".to_owned(), "é".to_owned()]]),
-                memory: self.of(&[Memory::Exponential, Memory::BackwardEuler]),
-            },
+            body,
+            materials,
             indenter: self.of(&[
                 Indenter::Harmonic { amplitude: 1e-9 * radius, wavelength },
                 Indenter::Parabola { radius, centre },
@@ -337,6 +326,56 @@ impl Random {
                 tolerance: 1e-6 * self.unit(),
             },
         }
+    }
+
+    fn layer(&mut self, wavelength: f64) -> Body {
+        Body::Layer(Layer {
+            width: wavelength * (1 + self.below(9)) as f64,
+            depth: self.positive(),
+            cells: [2 + self.below(300) as usize, 4 + self.below(300) as usize],
+            grading: self.positive(),
+            sides: self.of(&[Sides::Periodic, Sides::Free, Sides::Roller, Sides::Fixed]),
+            element: self.of(&[Element::Quad4, Element::Quad4Bbar]),
+        })
+    }
+
+    fn mesh_file(&mut self) -> Body {
+        Body::Mesh(MeshFile {
+            file: PathBuf::from("/meshes/a b.msh"),
+            contact: "contact".to_owned(),
+            fixed: vec!["base".to_owned(), "left \"1\"".to_owned()],
+            roller: self.of(&[vec![], vec!["side".to_owned()]]),
+            element: self.of(&[Element::Quad4, Element::Quad4Bbar]),
+        })
+    }
+
+    /// One material, or several: strata of a layer, regions of a mesh.
+    fn materials(&mut self, body: &Body) -> Vec<Material> {
+        let count = 1 + self.below(3) as usize;
+        let memory = self.of(&[Memory::Exponential, Memory::BackwardEuler]);
+        (0..count)
+            .map(|index| {
+                let arms = self.below(4);
+                let poisson_rule =
+                    self.of(&[PoissonRule::ConstantRatio, PoissonRule::ConstantBulkModulus, PoissonRule::BulkArms]);
+                let bulk_arms = if poisson_rule == PoissonRule::BulkArms { 1 + self.below(3) } else { 0 };
+                let (region, thickness) = match body {
+                    Body::Mesh(_) => (Some(format!("part.{index}")), None),
+                    Body::Layer(layer) => (None, (index + 1 < count).then_some(layer.depth / 7.0)),
+                };
+                Material {
+                    region,
+                    thickness,
+                    shear_modulus: 1e9 * self.positive(),
+                    poisson_ratio: 1.4 * self.unit() - 0.9,
+                    arms: self.arms(arms),
+                    poisson_rule: Some(poisson_rule),
+                    bulk_arms: self.arms(bulk_arms),
+                    notes: self.of(&[vec![], vec!["read from \"a\"".to_owned(), "é".to_owned()]]),
+                    memory,
+                }
+            })
+            .collect()
     }
 
     fn phase(&mut self, index: usize) -> Phase {

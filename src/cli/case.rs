@@ -154,6 +154,6 @@ fn bulk_plan(scene: &Scene, mesh: &Mesh, phases: &[Phase]) -> Option<BulkPlan> {
     Some(BulkPlan {
         frames: phases.iter().flat_map(|phase| &phase.steps).filter(|target| target.bulk_output).count(),
         coordinates: mesh.nodes.iter().map(|node| [node.x, node.y]).collect(),
-        cells: mesh.cells.iter().map(|cell| cell.map(i64::from)).collect(),
+        cells: mesh.cells.iter().map(|cell| cell.four().map(i64::from)).collect(),
     })
 }

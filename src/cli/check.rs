@@ -28,9 +28,11 @@ pub fn run(arguments: &CheckArguments) -> Result<()> {
     let file = &arguments.scene;
     let source = Source { file: file.clone(), overrides: arguments.set.clone() };
     let scene = scene::read(&scene::open(file)?, &source)?;
-    let shape = composition::shape(&scene, file, &composition::elevations(&scene, file)?)?;
+    let elevations = composition::elevations(&scene, file)?;
+    let outline = composition::outline(&scene, file)?;
+    let shape = composition::shape(&scene, file, &elevations, outline.face)?;
     println!("{}", scene.to_toml().trim_end());
-    println!("\n{}", profile::describe(&scene, &shape));
-    println!("{}", summary::plan(&scene));
+    println!("\n{}", profile::describe(&scene, &shape, outline.face));
+    println!("{}", summary::plan(&scene, &outline));
     Ok(())
 }

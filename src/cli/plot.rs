@@ -119,7 +119,11 @@ fn read_material(file: &Path) -> Result<scene::Material> {
             table.entry(key).or_insert(value);
         }
     }
-    Ok(scene::from_table(&table, file)?.material)
+    let mut materials = scene::from_table(&table, file)?.materials;
+    match (materials.pop(), materials.is_empty()) {
+        (Some(material), true) => Ok(material),
+        _ => Err(Error::scene(file, "material", "is several; give each as a file of its own")),
+    }
 }
 
 /// What a scene has besides its material.

@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use crate::composition::{Finest, Shape};
+use crate::composition::{Finest, Shape, Stretch};
 use crate::scene::{Indenter, Scene};
 
 /// A few lines about the profile over the face, with a sketch, and warnings of what a run would miss.
-pub fn describe(scene: &Scene, shape: &Shape) -> String {
+pub fn describe(scene: &Scene, shape: &Shape, face: Stretch) -> String {
     const COLUMNS: usize = 64;
     let survey = &shape.survey;
     let [low, high] = survey.range();
@@ -23,7 +23,7 @@ pub fn describe(scene: &Scene, shape: &Shape) -> String {
         survey.rms_slope()
     );
     let _ = write!(text, "\n               {}", survey.sketch(COLUMNS));
-    let cell = scene.layer.width / scene.layer.cells[0] as f64;
+    let cell = face.cell();
     match shape.finest {
         Some(Finest::Wavelength(length)) => {
             let _ = write!(text, "\n               {:.1} cells to the shortest wave ({length} m)", length / cell);
@@ -33,7 +33,7 @@ pub fn describe(scene: &Scene, shape: &Shape) -> String {
         }
         None => {}
     }
-    for warning in warnings(scene, shape, cell) {
+    for warning in warnings(scene, shape, face) {
         let _ = write!(text, "\nwarning:       {warning}");
     }
     text
@@ -52,13 +52,14 @@ fn name(indenter: &Indenter) -> String {
 }
 
 /// What the mesh does not see of the profile, and contact that is not where one expects it.
-fn warnings(scene: &Scene, shape: &Shape, cell: f64) -> Vec<String> {
+fn warnings(scene: &Scene, shape: &Shape, face: Stretch) -> Vec<String> {
     const FEWEST: f64 = 4.0;
+    let cell = face.cell();
     let mut list = Vec::new();
     match shape.finest {
         Some(Finest::Wavelength(length)) if length / cell < FEWEST * (1.0 - 1e-9) => list.push(format!(
             "fewer than {FEWEST} cells to the shortest wave: the mesh sees another profile; give at least {:.0} cells",
-            (FEWEST * scene.layer.width / length).ceil()
+            (FEWEST * face.width() / length).ceil()
         )),
         Some(Finest::Spacing(length)) if cell > length * (1.0 + 1e-6) => list.push(format!(
             "the file is finer than the mesh: nodes are {cell:.3e} m apart, sampling points {length:.3e} m"

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::time::Duration;
 
 use super::material;
-use crate::composition::{self, Form};
+use crate::composition::{self, Form, Outline, Stretch};
 use crate::output::{HistoryRow, Status};
 use crate::petsc;
 use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
@@ -13,17 +13,21 @@ use crate::solve::Counts;
 /// What is modelled and what is not: (modelled, not modelled).
 pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
     let (mut yes, mut no) = (Vec::new(), Vec::new());
-    let arms = scene.material.arms.len();
-    match (arms, scene.material.poisson_rule) {
-        (_, Some(PoissonRule::BulkArms)) => {
-            let bulk = scene.material.bulk_arms.len();
-            yes.push(format!("viscoelastic memory: {arms} arm(s) of the shear modulus, {bulk} of the bulk modulus"));
+    for (place, material) in material::placed(scene) {
+        let arms = material.arms.len();
+        match (arms, material.poisson_rule) {
+            (_, Some(PoissonRule::BulkArms)) => {
+                let bulk = material.bulk_arms.len();
+                let text = format!("{arms} arm(s) of the shear modulus, {bulk} of the bulk modulus");
+                yes.push(format!("{place}viscoelastic memory: {text}"));
+            }
+            (0, _) => no.push(format!("{place}memory (linear elastic)")),
+            (_, Some(PoissonRule::ConstantBulkModulus)) => {
+                let text = "arm(s) of the shear modulus, constant bulk modulus";
+                yes.push(format!("{place}viscoelastic memory: {arms} {text}"));
+            }
+            _ => yes.push(format!("{place}viscoelastic memory: {arms} arm(s), constant Poisson ratio")),
         }
-        (0, _) => no.push("memory (linear elastic)".to_owned()),
-        (_, Some(PoissonRule::ConstantBulkModulus)) => {
-            yes.push(format!("viscoelastic memory: {arms} arm(s) of the shear modulus, constant bulk modulus"));
-        }
-        _ => yes.push(format!("viscoelastic memory: {arms} arm(s), constant Poisson ratio")),
     }
     match scene.friction {
         Some(Friction::CoulombTanh { coefficient, regularisation }) => {
@@ -31,10 +35,13 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
         }
         None => no.push("friction (symmetric solver)".to_owned()),
     }
+    let softer = scene.layer().map_or_else(String::new, |layer| {
+        let added = added_compliance(scene.contact.penalty, layer, &scene.materials);
+        format!(" ({added:.2e} of the compliance to the wave the layer is stiffest to)")
+    });
     yes.push(format!(
-        "contact: penalty {:.3e} Pa/m ({:.2e} of the compliance to the wave the layer is stiffest to), {} quadrature",
+        "contact: penalty {:.3e} Pa/m{softer}, {} quadrature",
         scene.contact.penalty,
-        added_compliance(scene.contact.penalty, &scene.layer, &scene.material),
         match scene.contact.quadrature {
             Quadrature::Nodal => "nodal",
             Quadrature::Gauss => "two-point Gauss",
@@ -50,22 +57,15 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
 }
 
 /// What `mpjr check` prints after the resolved scene.
-pub fn plan(scene: &Scene) -> String {
+pub fn plan(scene: &Scene, outline: &Outline) -> String {
     let (yes, no) = modelled(scene);
-    let estimate = Estimate::of(scene);
-    let [nx, nz] = scene.layer.cells;
-    let sides = match scene.layer.sides {
-        Sides::Periodic => "periodic",
-        Sides::Free => "free",
-        Sides::Roller => "roller",
-        Sides::Fixed => "fixed",
-    };
+    let estimate = Estimate::of(scene, outline);
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "modelled:      {}", yes.join("\n               "));
     let _ = writeln!(text, "not modelled:  {}", no.join("\n               "));
     text += &material::lines(scene);
-    let _ = writeln!(text, "mesh:          {nx} x {nz} cells, {sides} sides, {} unknowns", scene.unknowns());
+    let _ = writeln!(text, "mesh:          {}, {} unknowns", extent(scene, outline), outline.unknowns);
     let _ = writeln!(
         text,
         "loading:       {} phase(s), {} steps, {:.6} s",
@@ -82,6 +82,29 @@ pub fn plan(scene: &Scene) -> String {
         estimate.memory / 1e9
     );
     text
+}
+
+/// The mesh in words.
+fn extent(scene: &Scene, outline: &Outline) -> String {
+    if let Some(layer) = scene.layer() {
+        let sides = match layer.sides {
+            Sides::Periodic => "periodic",
+            Sides::Free => "free",
+            Sides::Roller => "roller",
+            Sides::Fixed => "fixed",
+        };
+        return format!("{} x {} cells, {sides} sides", layer.cells[0], layer.cells[1]);
+    }
+    let [quadrilaterals, triangles] = outline.cells;
+    let lock = match triangles > 0 && scene.materials.iter().any(|material| material.poisson_ratio > 0.45) {
+        true => " (they lock near a Poisson ratio of 0.5)",
+        false => "",
+    };
+    let Stretch { from, to, edges, .. } = outline.face;
+    format!(
+        "{quadrilaterals} quadrilaterals, {triangles} triangles{lock}, contact face of {edges} edges from x = {from:.6} \
+         to {to:.6} m"
+    )
 }
 
 /// What a run did.
@@ -151,12 +174,12 @@ fn strategy(scene: &Scene) -> String {
     match composition::form(scene) {
         Form::Monolithic => "monolithic: all unknowns in one sparse system, factorised at each Newton iteration".into(),
         Form::Following => format!(
-            "{asked}condensed: shear and bulk modulus keep their ratio, so that the interior follows the contact\n\
+            "{asked}condensed: all moduli keep their ratios, so that the interior follows the contact\n\
              {:15}face; Newton runs on the nodes in contact",
             ""
         ),
         Form::Remembering => format!(
-            "{asked}condensed: only the shear modulus relaxes, so that the interior has a memory of its own; one\n\
+            "{asked}condensed: not all moduli relax alike, so that the interior has a memory of its own; one\n\
              {:15}factorisation per step length, two interior solves per step, Newton on the nodes in contact",
             ""
         ),
@@ -172,14 +195,14 @@ struct Estimate {
 }
 
 impl Estimate {
-    fn of(scene: &Scene) -> Self {
-        let unknowns = scene.unknowns() as f64;
-        let face = 2.0 * (scene.layer.cells[0] + 1) as f64;
+    fn of(scene: &Scene, outline: &Outline) -> Self {
+        let unknowns = outline.unknowns as f64;
+        let face = 2.0 * (outline.face.edges + 1) as f64;
         let newton = 4.0;
         // Nested dissection in the plane: n^1.5 operations, n log n entries; half of both when symmetric.
         let entries = |symmetry: f64| 8.0 * 5.0 * unknowns * unknowns.max(2.0).log2() * symmetry;
         let (matrix, vector) = (18.0 * 12.0 * unknowns, 8.0 * unknowns);
-        let arms = (scene.material.arms.len() + 4) as f64;
+        let arms = (scene.materials.iter().map(|material| material.arms.len()).sum::<usize>() + 4) as f64;
         // Half of the face in contact: a small dense factorisation and some products with the compliance.
         let contact = newton * (2e-10 * (face / 2.0).powi(3).min(face.powi(2) * 300.0) + 3e-9 * face * face);
         let compliance = 8.0 * face * face;

@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use super::phases;
+use super::{Stretch, phases};
 use crate::error::{Error, Result};
 use crate::expression::Expression;
 use crate::profile::{
     Circle, Formula, Harmonic, Parabola, Point, Profile, Repeated, Rms, Rough, Roughness, Sampled, Survey, Wedge,
     profilometer,
 };
-use crate::scene::{self, Extend, Indenter, Scene, Sides};
+use crate::scene::{self, Extend, Indenter, Scene};
 
 /// A profile made ready, and what is known of it.
 pub struct Shape {
@@ -49,16 +49,14 @@ pub fn elevations(scene: &Scene, file: &Path) -> Result<Vec<f64>> {
     Ok(points.iter().flat_map(|point| [point.x, point.height]).collect())
 }
 
-/// The profile of the scene in `file`, with the [`elevations`] it needs. Under periodic sides every profile repeats with
-/// the layer's period.
+/// The profile of the scene in `file` over its contact face, with the [`elevations`] it needs. Under periodic sides every
+/// profile repeats with the layer's period.
 ///
 /// # Errors
 /// [`Error::Scene`] when the profile is not known everywhere that the loading history takes the face.
-pub fn shape(scene: &Scene, file: &Path, elevations: &[f64]) -> Result<Shape> {
-    let width = scene.layer.width;
-    let periodic = scene.layer.sides == Sides::Periodic;
-    let repeat = |profile: Box<dyn Profile>, centre: f64| match periodic {
-        true => Box::new(Repeated { profile, centre, period: width }),
+pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], face: Stretch) -> Result<Shape> {
+    let repeat = |profile: Box<dyn Profile>, centre: f64| match face.periodic {
+        true => Box::new(Repeated { profile, centre, period: face.width() }),
         false => profile,
     };
     let wrong = |key: &str, reason: String| Error::scene(file, format!("indenter.{key}"), reason);
@@ -75,12 +73,12 @@ pub fn shape(scene: &Scene, file: &Path, elevations: &[f64]) -> Result<Shape> {
             let expression = Expression::parse(formula, &["x"])
                 .map_err(|fault| wrong("formula", format!("{formula:?}, {fault}")))?;
             let profile = Formula { expression };
-            check_formula(&profile, scene).map_err(|reason| wrong("formula", format!("{formula:?} {reason}")))?;
-            repeat(Box::new(profile), 0.5 * width)
+            check_formula(&profile, scene, face).map_err(|reason| wrong("formula", format!("{formula:?} {reason}")))?;
+            repeat(Box::new(profile), 0.5 * face.width())
         }
         Indenter::Sampled { .. } => {
             let points = elevations.chunks_exact(2).map(|pair| Point { x: pair[0], height: pair[1] }).collect();
-            let profile = sampled(points, scene, file)?;
+            let profile = sampled(points, (scene, file), face)?;
             let (count, span) = (elevations.len() / 2, elevations[elevations.len() - 2] - elevations[0]);
             finest = Some(Finest::Spacing(span / (count - 1) as f64));
             let repeats = profile.period().map_or(String::new(), |period| format!(", repeating after {period:?} m"));
@@ -99,7 +97,7 @@ pub fn shape(scene: &Scene, file: &Path, elevations: &[f64]) -> Result<Shape> {
             Box::new(Rough::new(roughness))
         }
     };
-    let survey = survey(&*profile, scene).map_err(|error| wrong("profile", error.to_string()))?;
+    let survey = survey(&*profile, face).map_err(|error| wrong("profile", error.to_string()))?;
     Ok(Shape { profile, finest, detail, survey })
 }
 
@@ -107,50 +105,50 @@ pub fn shape(scene: &Scene, file: &Path, elevations: &[f64]) -> Result<Shape> {
 const POINTS_PER_CELL: usize = 8;
 const MOST_POINTS: usize = 200_000;
 
-fn survey(profile: &dyn Profile, scene: &Scene) -> Result<Survey> {
-    let pieces = (POINTS_PER_CELL * scene.layer.cells[0]).clamp(512, MOST_POINTS);
-    Survey::new(profile, [0.0, scene.layer.width], pieces)
+fn survey(profile: &dyn Profile, face: Stretch) -> Result<Survey> {
+    let pieces = (POINTS_PER_CELL * face.edges).clamp(512, MOST_POINTS);
+    Survey::new(profile, [face.from, face.to], pieces)
 }
 
 /// The stretch of the profile, m, that the face meets over the whole history; under periodic sides one period is all
 /// there is.
-fn reach(scene: &Scene) -> [f64; 2] {
-    let width = scene.layer.width;
-    if scene.layer.sides == Sides::Periodic {
-        return [0.0, width];
+fn reach(scene: &Scene, face: Stretch) -> [f64; 2] {
+    if face.periodic {
+        return [face.from, face.to];
     }
     let ranges = phases(scene).iter().map(|phase| phase.sliding_range()).collect::<Vec<_>>();
     let least = ranges.iter().map(|range| range[0]).fold(0.0, f64::min);
     let greatest = ranges.iter().map(|range| range[1]).fold(0.0, f64::max);
-    [-greatest, width - least]
+    [face.from - greatest, face.to - least]
 }
 
 /// A formula is finite wherever the face meets it, as far as sampling can tell, and has no jump where it repeats.
-fn check_formula(profile: &Formula, scene: &Scene) -> std::result::Result<(), String> {
-    let [from, to] = reach(scene);
-    let width = scene.layer.width;
-    let pieces = ((to - from) / width * (POINTS_PER_CELL * scene.layer.cells[0]) as f64) as usize;
+fn check_formula(profile: &Formula, scene: &Scene, face: Stretch) -> std::result::Result<(), String> {
+    let [from, to] = reach(scene, face);
+    let pieces = ((to - from) / face.width() * (POINTS_PER_CELL * face.edges) as f64) as usize;
     let survey = Survey::new(profile, [from, to], pieces.clamp(512, MOST_POINTS)).map_err(|error| error.to_string())?;
     let heights = [survey.points[0].height, survey.points[survey.points.len() - 1].height];
     let [low, high] = survey.range();
-    if scene.layer.sides == Sides::Periodic && (heights[1] - heights[0]).abs() > 1e-6 * (high - low) {
+    if face.periodic && (heights[1] - heights[0]).abs() > 1e-6 * (high - low) {
         return Err(format!(
-            "must be the same at both sides of a periodic layer, got {:e} m at x = 0 and {:e} m at x = {width:?} m",
-            heights[0], heights[1]
+            "must be the same at both sides of a periodic layer, got {:e} m at x = 0 and {:e} m at x = {:?} m",
+            heights[0],
+            heights[1],
+            face.width()
         ));
     }
     Ok(())
 }
 
 /// The profile through the points of a file, repeating as the scene says.
-fn sampled(points: Vec<Point>, scene: &Scene, file: &Path) -> Result<Sampled> {
+fn sampled(points: Vec<Point>, (scene, file): (&Scene, &Path), face: Stretch) -> Result<Sampled> {
     let wrong = |key: &str, reason: String| Error::scene(file, key, reason);
     let Indenter::Sampled { extend: Extend::Periodic, period, .. } = scene.indenter else {
-        return bounded(points, scene).map_err(|reason| wrong("indenter.file", reason));
+        return bounded(points, scene, face).map_err(|reason| wrong("indenter.file", reason));
     };
     let period = sampled_period(&points, period).map_err(|reason| wrong("indenter.period", reason))?;
-    if scene.layer.sides == Sides::Periodic {
-        scene::whole_periods(scene.layer.width, "periods of the profile", period)
+    if face.periodic {
+        scene::whole_periods(face.width(), "periods of the profile", period)
             .map_err(|reason| wrong("layer.width", format!("{reason}; or give indenter.period")))?;
     }
     Ok(Sampled::new(points, Some(period)))
@@ -180,17 +178,17 @@ fn sampled_period(points: &[Point], said: Option<f64>) -> std::result::Result<f6
 }
 
 /// The bounded profile through `points`, which covers what the face meets.
-fn bounded(points: Vec<Point>, scene: &Scene) -> std::result::Result<Sampled, String> {
+fn bounded(points: Vec<Point>, scene: &Scene, face: Stretch) -> std::result::Result<Sampled, String> {
     let (first, last) = (points[0].x, points[points.len() - 1].x);
-    let [from, to] = reach(scene);
+    let [from, to] = reach(scene, face);
     let profile = Sampled::new(points, None);
     if profile.at(from).is_ok() && profile.at(to).is_ok() {
         return Ok(profile);
     }
-    let width = scene.layer.width;
     Err(format!(
-        "its x must cover {from:?} to {to:?} m (a face of {width:?} m, and the sliding of all phases), got {first:?} to \
-         {last:?} m; give a longer profile, slide less, or say extend = \"periodic\""
+        "its x must cover {from:?} to {to:?} m (a face of {:?} m, and the sliding of all phases), got {first:?} to \
+         {last:?} m; give a longer profile, slide less, or say extend = \"periodic\"",
+        face.width()
     ))
 }
 

@@ -3,17 +3,22 @@
 //! Bonari and Paggi (2020), Eqs. (1) to (6). The two lower nodes belong to the layer; the two upper ones to the rigid
 //! indenter, whose motion is prescribed, so they carry no unknowns and the relative displacement g = Q N L u reduces to
 //! the indenter's motion minus the layer's. In the element's frame (t along the contact face in the sense of +x, n
-//! outward from the layer):
+//! outward from the layer), with everything at the undeformed place (x, z) of the point:
 //!
 //! ```text
-//! g*_n = h(x - s) - D - u.n            Eq. (2), corrected normal gap; s sliding, D approach
+//! c    = h(x - s) - D + z_top - z      vertical clearance; s sliding, D approach, z_top the summit of the face
+//! g*_n = c n_z - u.n                   Eq. (2), corrected normal gap
 //! p    = -alpha g*_n where g*_n < 0    Eq. (3), p >= 0 in compression
-//! w    = ds/dt - du.t/dt               slip rate
+//! w    = (v - du/dt).t                 slip rate; v = (ds/dt, -dD/dt), the indenter's velocity
 //! q    = friction law of (p, w)        Eq. (4), traction on the layer along t
 //! R_a  = integral of N_a (-q t + p n)  Eq. (6), internal minus external force on the lower nodes a = 1, 2
 //! ```
 //!
-//! Ours rather than the paper's: the upper nodes are eliminated, and the quadrature may be nodal.
+//! On a flat face t = x, n = z, z = z_top. On a curved one the gap is the projection of the vertical clearance on the
+//! local normal, which is the distance to second order in the slopes of face and profile.
+//!
+//! Ours rather than the paper's: the upper nodes are eliminated, the elevation of a curved face enters the gap, and the
+//! quadrature may be nodal.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -48,15 +53,50 @@ impl Quadrature {
     }
 }
 
+/// The paper's Q: turns (x, z) into (t, n); its rows are t and n.
+pub type Frame = Matrix2<f64>;
+
+/// The frame of an element along the unit vector `tangent`.
+pub fn frame(tangent: Vector2<f64>) -> Frame {
+    Frame::new(tangent.x, tangent.y, -tangent.y, tangent.x)
+}
+
+/// The indenter over one point of the face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Over {
+    /// Vertical clearance c over the undeformed face, m.
+    pub clearance: f64,
+    /// (ds/dt, -dD/dt), m/s.
+    pub velocity: Vector2<f64>,
+}
+
+/// The layer at one point of the face, in (x, z).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Under {
+    /// m
+    pub displacement: Vector2<f64>,
+    /// m/s
+    pub rate: Vector2<f64>,
+}
+
 /// What the layer and the indenter do at one point, in the element's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
-    /// h(x - s) - D: the gap over the undeformed face, m.
+    /// c n_z: the gap over the undeformed face, m.
     pub clearance: f64,
     /// u.n, m
     pub normal: f64,
     /// Slip rate w, m/s.
     pub slip_rate: f64,
+}
+
+impl Motion {
+    /// The relative motion in the frame, Eq. (2).
+    pub fn new(frame: &Frame, over: Over, under: Under) -> Self {
+        let displacement = frame * under.displacement;
+        let slip_rate = frame * (over.velocity - under.rate);
+        Self { clearance: over.clearance * frame[(1, 1)], normal: displacement.y, slip_rate: slip_rate.x }
+    }
 }
 
 /// Tractions at one point and their derivatives.

@@ -46,7 +46,8 @@ mod tests {
 
     fn face(nodes: usize) -> Vec<Edge> {
         let length = 1.0 / nodes as f64;
-        (0..nodes).map(|i| Edge { ends: [i, (i + 1) % nodes], start: i as f64 * length, length }).collect()
+        let edge = |i| Edge { ends: [i, (i + 1) % nodes], start: i as f64 * length, length, tangent: Vector2::x() };
+        (0..nodes).map(edge).collect()
     }
 
     fn indicator(nodes: usize, p: impl Fn(usize, f64) -> f64) -> f64 {

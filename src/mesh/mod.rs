@@ -2,21 +2,26 @@
 //!
 //! Every rank holds the whole topology (a few tens of bytes per cell); matrices and vectors are distributed.
 
+mod cell;
+pub mod gmsh;
 mod layer;
 mod partition;
 
+pub use cell::Cell;
 pub use layer::{Layer, Sides};
 pub use partition::Numbering;
 
 use nalgebra::Vector2;
 
-/// A mesh of quadrilaterals and its contact face.
+/// A mesh of quadrilaterals and triangles, and its contact face.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
     /// Undeformed coordinates x, z of the nodes, m; the contact face is at the top, z grows outward.
     pub nodes: Vec<Vector2<f64>>,
-    /// Corners of the cells, counter-clockwise.
-    pub cells: Vec<[u32; 4]>,
+    /// The cells.
+    pub cells: Vec<Cell>,
+    /// Which material each cell is of, from 0.
+    pub regions: Vec<u16>,
     /// The unknown that carries each node's displacement: its own, or that of the node it is a periodic image of.
     pub unknown: Vec<u32>,
     /// Which displacement components of each unknown are held at zero.
@@ -25,13 +30,15 @@ pub struct Mesh {
     pub face: Face,
 }
 
-/// The contact face: its nodes in order of x, and the edges between them.
+/// The contact face: its nodes in order of x, and the edges between them. The body is below it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Face {
     /// The unknown of each face node.
     pub unknown: Vec<u32>,
     /// Undeformed x of each face node, m.
     pub x: Vec<f64>,
+    /// How far each face node lies below the highest one, m; zero on a flat face.
+    pub recess: Vec<f64>,
     /// The edges; on a periodic face the last one ends at the first node.
     pub edges: Vec<Edge>,
 }
@@ -41,10 +48,12 @@ pub struct Face {
 pub struct Edge {
     /// Indices into the face's nodes.
     pub ends: [usize; 2],
-    /// x of the first end and length, m.
+    /// x of the first end, m.
     pub start: f64,
     /// m
     pub length: f64,
+    /// Unit vector from the first end to the second, in the sense of +x.
+    pub tangent: Vector2<f64>,
 }
 
 impl Edge {
@@ -61,13 +70,18 @@ impl Mesh {
         self.held.len()
     }
 
-    /// The coordinates of a cell's corners, m.
-    pub fn corners(&self, cell: usize) -> [Vector2<f64>; 4] {
-        self.cells[cell].map(|node| self.nodes[node as usize])
+    /// The displacement components that nothing holds.
+    pub fn free_components(&self) -> usize {
+        self.held.iter().flatten().filter(|held| !**held).count()
     }
 
-    /// The unknowns of a cell's corners.
-    pub fn cell_unknowns(&self, cell: usize) -> [u32; 4] {
+    /// The coordinates of a cell's corners, m.
+    pub fn points<const N: usize>(&self, corners: [u32; N]) -> [Vector2<f64>; N] {
+        corners.map(|node| self.nodes[node as usize])
+    }
+
+    /// A cell whose corners are the unknowns of its own.
+    pub fn cell_unknowns(&self, cell: usize) -> Cell {
         self.cells[cell].map(|node| self.unknown[node as usize])
     }
 }

@@ -29,7 +29,7 @@ impl Numbering {
         let part = cell_parts(comm, mesh)?;
         let mut owner = vec![i32::MAX; mesh.unknown_nodes()];
         for (cell, &rank) in part.iter().enumerate() {
-            for unknown in mesh.cell_unknowns(cell) {
+            for &unknown in mesh.cell_unknowns(cell).corners() {
                 let entry = &mut owner[unknown as usize];
                 *entry = rank.min(*entry);
             }
@@ -65,10 +65,11 @@ impl Numbering {
     pub fn pattern(&self, mesh: &Mesh) -> petsc::Pattern {
         let mut neighbours: Vec<Vec<i32>> = vec![Vec::new(); self.owned.len()];
         for cell in 0..mesh.cells.len() {
-            let corners = mesh.cell_unknowns(cell).map(|unknown| self.global[unknown as usize]);
-            for row in corners {
+            let cell = mesh.cell_unknowns(cell);
+            let corners = || cell.corners().iter().map(|&unknown| self.global[unknown as usize]);
+            for row in corners() {
                 if self.owned.contains(&(row as usize)) {
-                    neighbours[row as usize - self.owned.start].extend(corners);
+                    neighbours[row as usize - self.owned.start].extend(corners());
                 }
             }
         }
@@ -105,11 +106,8 @@ fn cell_parts(comm: &SimpleCommunicator, mesh: &Mesh) -> Result<Vec<i32>> {
 /// For each cell of the run, the cells that share an edge with it.
 fn neighbours(mesh: &Mesh, run: Range<usize>) -> Vec<Vec<i32>> {
     let edges = |cell: usize| {
-        let corners = mesh.cell_unknowns(cell);
-        (0..4).map(move |i| {
-            let (a, b) = (corners[i], corners[(i + 1) % 4]);
-            (a.min(b), a.max(b))
-        })
+        let list: Vec<_> = mesh.cell_unknowns(cell).edges().map(|(a, b)| (a.min(b), a.max(b))).collect();
+        list.into_iter()
     };
     let mut sharing: HashMap<(u32, u32), Vec<i32>> = HashMap::new();
     for cell in run.clone() {

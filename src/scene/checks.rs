@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::{Arm, Extend, Indenter, Layer, Phase, Scene, Sides, When, keys};
+use super::{Arm, Extend, Indenter, Layer, Material, Phase, Scene, Sides, When, keys};
 use crate::error::{Error, Result};
 
 /// The key and what is wrong with it.
@@ -11,9 +11,11 @@ type Check = std::result::Result<(), (String, String)>;
 
 /// Everything that takes more than one table to see.
 pub(super) fn all(scene: &Scene, file: &Path) -> Result<()> {
-    shear_modulus(scene)
-        .and_then(|()| size(&scene.layer))
-        .and_then(|()| period(&scene.layer, &scene.indenter))
+    let layer = |check: &dyn Fn(&Layer) -> Check| scene.layer().map_or(Ok(()), check);
+    materials(&scene.materials)
+        .and_then(|()| layer(&size))
+        .and_then(|()| layer(&|layer| strata(layer, &scene.materials)))
+        .and_then(|()| layer(&|layer| period(layer, &scene.indenter)))
         .and_then(|()| times(&scene.phases))
         .and_then(|()| scene.phases.iter().try_for_each(|phase| approach(phase, scene)))
         .and_then(|()| moments(&scene.output.bulk_at, &scene.phases))
@@ -34,12 +36,43 @@ pub(super) fn weights(arms: &[Arm]) -> std::result::Result<(), String> {
     }
 }
 
-/// A modulus from Young's can leave the range of numbers where that did not.
-fn shear_modulus(scene: &Scene) -> Check {
-    match scene.material.shear_modulus {
-        modulus if modulus.is_finite() && modulus > 0.0 => Ok(()),
-        modulus => fail("material.young_modulus", format!("gives a shear modulus of {modulus:?} Pa; give another")),
+/// A modulus from Young's can leave the range of numbers where that did not; memory is updated in one way.
+fn materials(materials: &[Material]) -> Check {
+    let path = |index: usize, key: &str| match (&materials[index].region, materials.len()) {
+        (Some(region), _) => format!("material.{region}.{key}"),
+        (None, 1) => format!("material.{key}"),
+        (None, _) => format!("material.{index}.{key}"),
+    };
+    let with_arms = || materials.iter().enumerate().filter(|(_, material)| !material.is_elastic());
+    for (index, Material { shear_modulus, .. }) in materials.iter().enumerate() {
+        if !(shear_modulus.is_finite() && *shear_modulus > 0.0) {
+            let reason = format!("gives a shear modulus of {shear_modulus:?} Pa; give another");
+            return fail(&path(index, "young_modulus"), reason);
+        }
     }
+    match with_arms().find(|(_, other)| with_arms().next().is_some_and(|(_, first)| first.memory != other.memory)) {
+        Some((index, _)) => fail(&path(index, "memory"), "must be the same in all materials with arms"),
+        None => Ok(()),
+    }
+}
+
+/// The strata leave room for the last one, and there is a row of cells for each.
+fn strata(layer: &Layer, materials: &[Material]) -> Check {
+    let above: f64 = materials.iter().filter_map(|material| material.thickness).sum();
+    if above >= layer.depth {
+        let reason = format!(
+            "the strata above the last are {} m thick, which leaves it nothing of the layer's depth ({:?} m)",
+            short(above),
+            layer.depth
+        );
+        return fail(&format!("material.{}.thickness", materials.len() - 2), reason);
+    }
+    if layer.cells[1] < materials.len() {
+        let reason =
+            format!("{} rows of cells for {} strata; give at least one row for each", layer.cells[1], materials.len());
+        return fail("layer.cells", reason);
+    }
+    Ok(())
 }
 
 /// PETSc counts unknowns and matrix entries, about 18 to a row, with 32 bits.
@@ -127,11 +160,12 @@ fn times(phases: &[Phase]) -> Check {
 fn approach(phase: &Phase, scene: &Scene) -> Check {
     let Some(approach) = phase.approach else { return Ok(()) };
     let key = format!("phase.{}.approach", phase.name);
-    let depth = scene.layer.depth;
+    if let Some(Layer { depth, .. }) = scene.layer()
+        && approach >= *depth
+    {
+        return fail(&key, format!("must be less than the depth of the layer ({depth:?} m), got {approach:?}"));
+    }
     match scene.indenter {
-        _ if approach >= depth => {
-            fail(&key, format!("must be less than the depth of the layer ({depth:?} m), got {approach:?}"))
-        }
         Indenter::Circle { radius, .. } if approach >= radius => {
             fail(&key, format!("must be less than the radius of the circle ({radius:?} m), got {approach:?}"))
         }

@@ -247,7 +247,7 @@ pub(super) fn show(value: &Value) -> String {
 }
 
 /// What to write instead of an unknown word: the nearest known one, or all of them when none is near.
-pub(super) fn advice(word: &str, known: &[&str], title: &str) -> String {
+pub(crate) fn advice(word: &str, known: &[&str], title: &str) -> String {
     match nearest(word, known) {
         Some(name) => format!("did you mean \"{name}\"?"),
         None => format!("{title}: {}", known.join(", ")),

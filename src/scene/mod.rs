@@ -23,6 +23,7 @@ pub use checks::whole_periods;
 pub use differences::differences;
 pub use include::{Load, include, open};
 pub use indenter::{Extend, Indenter, Rms};
+pub(crate) use keys::advice;
 pub use overrides::{get, set};
 pub use penalty::{added_compliance, penalty_for};
 pub use read::{from_table, parse, read, read_with};
@@ -32,10 +33,12 @@ pub use read::{from_table, parse, read, read_with};
 pub struct Scene {
     /// Free text, copied to the results.
     pub title: String,
-    /// The deformable body.
-    pub layer: Layer,
-    /// What the body is made of.
-    pub material: Material,
+    /// The deformable body: `[layer]` or `[mesh]`.
+    #[serde(flatten)]
+    pub body: Body,
+    /// What the body is made of: one material, or one for each region of a mesh or stratum of a layer (top down).
+    #[serde(rename = "material", serialize_with = "resolved::materials")]
+    pub materials: Vec<Material>,
     /// The rigid indenter.
     pub indenter: Indenter,
     /// How non-penetration is enforced.
@@ -52,6 +55,42 @@ pub struct Scene {
     pub output: Output,
 }
 
+/// The deformable body.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Body {
+    /// Meshed by this program.
+    Layer(Layer),
+    /// Meshed by Gmsh.
+    Mesh(MeshFile),
+}
+
+/// A Gmsh file and what its named curves are.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MeshFile {
+    /// The .msh file, as an absolute path.
+    pub file: PathBuf,
+    /// Physical curve: the contact face.
+    pub contact: String,
+    /// Physical curves without displacement; at least one.
+    pub fixed: Vec<String>,
+    /// Physical curves, straight and along x or z, without displacement across them.
+    pub roller: Vec<String>,
+    /// What its quadrilaterals are.
+    pub element: Element,
+}
+
+/// The element for quadrilaterals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum Element {
+    /// Bilinear, fully integrated.
+    #[serde(rename = "q4")]
+    Quad4,
+    /// The same with mean dilatation, for Poisson ratios near 1/2.
+    #[serde(rename = "q4_bbar")]
+    Quad4Bbar,
+}
+
 /// A rectangular layer; the lower face is clamped, the upper one is the contact face.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Layer {
@@ -65,6 +104,8 @@ pub struct Layer {
     pub grading: f64,
     /// What holds the two sides.
     pub sides: Sides,
+    /// What its cells are.
+    pub element: Element,
 }
 
 /// What holds the sides of a layer.
@@ -84,6 +125,12 @@ pub enum Sides {
 /// A linear viscoelastic solid: instantaneous elasticity and the Prony arms of the shear modulus.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Material {
+    /// The physical surface of the mesh that it fills; none = all of the mesh, or a stratum of a layer.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub region: Option<String>,
+    /// Thickness of its stratum, m; none = all that the strata above leave.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub thickness: Option<f64>,
     /// Instantaneous (t = 0) shear modulus, Pa, > 0.
     pub shear_modulus: f64,
     /// Instantaneous Poisson ratio, in (-1, 0.5).

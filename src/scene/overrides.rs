@@ -33,7 +33,7 @@ pub(super) fn is_of_material(path: &str) -> bool {
 }
 
 /// Sets `path`, dotted keys such as `layer.width`, in the table of a scene. An element of an array is addressed by
-/// its index from 0 or, where it has one, by its name (`phase.slide.velocity`); a key with a dot in it is quoted
+/// its index from 0 or, where it has one, by its name or region (`phase.slide.velocity`); a key with a dot in it is quoted
 /// (`phase."1.5 s".steps`). Tables on the way are made. Whether the keys exist is for the reader of the table to say.
 pub fn set(table: &mut Table, path: &str, value: Value, file: &Path) -> Result<()> {
     // Deeper than any key of a scene, and no strain on the stack.
@@ -145,7 +145,8 @@ fn put_in_value(target: &mut Value, keys: &[String], depth: usize, value: Value)
 
 /// The position of the element that `word` addresses, by name or by index.
 fn element(array: &[Value], key: &str, word: &str) -> std::result::Result<usize, String> {
-    let name = |(index, value): (usize, &Value)| match value.as_table()?.get("name") {
+    let name = |(index, value): (usize, &Value)| match value.as_table().and_then(|t| t.get("name").or(t.get("region")))
+    {
         Some(name) => name.as_str().map(str::to_owned),
         None => (key == "phase").then(|| phase::default_name(index)),
     };

@@ -1,6 +1,7 @@
 //! The keys of a scene: which there are, what each accepts, and what it becomes. What one key has to do with another
 //! is in `checks`.
 
+mod body;
 mod indenter;
 pub(super) mod material;
 pub(super) mod phase;
@@ -11,8 +12,8 @@ use toml::Table;
 
 use super::keys::{self, Quantity, Section};
 use super::{
-    Contact, Friction, Layer, Load, Material, Output, Phase, Quadrature, Scene, Sides, Solver, Source, Strategy, When,
-    checks, include, overrides, penalty_for,
+    Body, Contact, Friction, Load, Material, Output, Quadrature, Scene, Solver, Source, Strategy, When, checks,
+    include, overrides, penalty_for,
 };
 use crate::error::{Error, Result};
 
@@ -56,27 +57,26 @@ pub fn from_table(table: &Table, file: &Path) -> Result<Scene> {
     include::include(&mut table, file, &include::open)?;
     let root = Section::root(file, &table);
     root.later(&[
-        ("mesh", "use [layer]"),
-        ("element", "remove it: the element is the 4-node quadrilateral"),
+        ("element", "give it in [layer] or [mesh]"),
         ("temperature", NO_TEMPERATURE),
         ("reference_temperature", NO_TEMPERATURE),
     ])?;
-    root.only(&["title", "layer", "material", "indenter", "contact", "friction", "phase", "solver", "output"])?;
+    root.only(&["title", "layer", "mesh", "material", "indenter", "contact", "friction", "phase", "solver", "output"])?;
     let title = title(&root, file)?;
-    let layer = layer(&root.section("layer")?)?;
-    // The history says over which times the material must hold.
+    let body = body::read(&root, file)?;
+    // The history says over which times the materials must hold.
     let phases = phase::read_all(&root)?;
-    let material = material(&root, &phases)?;
+    let materials = body::materials(&root, &body, super::material::band(&phases))?;
     let mut scene = Scene {
         indenter: indenter::read(&root.section("indenter")?)?,
-        contact: contact(&root.section("contact")?, &layer, &material)?,
+        contact: contact(&root.section("contact")?, &body, &materials)?,
         friction: root.optional_section("friction")?.as_ref().map(friction).transpose()?,
         phases,
         solver: solver(root.optional_section("solver")?.as_ref())?,
         output: output(root.optional_section("output")?.as_ref())?,
         title,
-        layer,
-        material,
+        body,
+        materials,
     };
     checks::all(&scene, file)?;
     scene.clamp_moments();
@@ -90,53 +90,22 @@ fn title(root: &Section, file: &Path) -> Result<String> {
     Ok(root.optional_text("title", "a text on one line")?.unwrap_or_else(stem))
 }
 
-fn layer(section: &Section) -> Result<Layer> {
-    const LENGTH: Quantity = Quantity::positive("a positive length in m");
-    // Beyond these the cells at one face have no height to speak of.
-    const GRADING: Quantity =
-        Quantity { what: "a ratio of cell heights from 1e-6 to 1e6", accepts: |ratio| (1e-6..=1e6).contains(&ratio) };
-    const SIDES: [(&str, Sides); 4] =
-        [("periodic", Sides::Periodic), ("free", Sides::Free), ("roller", Sides::Roller), ("fixed", Sides::Fixed)];
-
-    section.later(&[("element", "remove it: the element is the 4-node quadrilateral")])?;
-    section.only(&["width", "depth", "cells", "grading", "sides"])?;
-    Ok(Layer {
-        width: section.number("width", LENGTH)?,
-        depth: section.number("depth", LENGTH)?,
-        cells: section.pair(
-            "cells",
-            "two whole numbers, each at least 1: [along the face, through the depth]",
-            COUNT,
-        )?,
-        grading: section.optional_number("grading", GRADING)?.unwrap_or(1.0),
-        sides: section.choice("sides", &SIDES, &[])?,
-    })
-}
-
 /// Whole numbers from 1.
 const COUNT: std::ops::RangeInclusive<usize> = 1..=usize::MAX;
 
-fn material(root: &Section, phases: &[Phase]) -> Result<Material> {
-    if root.values("material", "").is_ok_and(|regions| !regions.is_empty()) {
-        let reason = "several materials are not supported by this version; give one [material] table";
-        return Err(root.error("material", reason));
-    }
-    material::read(&root.section("material")?, &[], super::material::band(phases))
-}
-
-fn contact(section: &Section, layer: &Layer, material: &Material) -> Result<Contact> {
+fn contact(section: &Section, body: &Body, materials: &[Material]) -> Result<Contact> {
     const QUADRATURES: [(&str, Quadrature); 2] = [("nodal", Quadrature::Nodal), ("gauss", Quadrature::Gauss)];
 
     section.later(&[("method", "remove it: contact is enforced by penalty")])?;
     section.only(&["penalty", "tolerance", "quadrature"])?;
     Ok(Contact {
-        penalty: penalty(section, layer, material)?,
+        penalty: penalty(section, body, materials)?,
         quadrature: section.optional_choice("quadrature", &QUADRATURES, &[])?.unwrap_or(Quadrature::Nodal),
     })
 }
 
 /// The penalty, given as itself or as the compliance that it may add.
-fn penalty(section: &Section, layer: &Layer, material: &Material) -> Result<f64> {
+fn penalty(section: &Section, body: &Body, materials: &[Material]) -> Result<f64> {
     const PENALTY: Quantity = Quantity::positive("a positive stiffness in Pa/m");
     const TOLERANCE: Quantity =
         Quantity { what: "a relative tolerance above 0 and below 1", accepts: |value| value > 0.0 && value < 1.0 };
@@ -146,10 +115,17 @@ fn penalty(section: &Section, layer: &Layer, material: &Material) -> Result<f64>
     match (penalty, tolerance) {
         (Some(_), Some(_)) => Err(section.error("tolerance", "give penalty or tolerance, not both")),
         (Some(penalty), None) => Ok(penalty),
-        (None, Some(tolerance)) => match penalty_for(tolerance, layer, material) {
-            penalty if penalty.is_finite() && penalty > 0.0 => Ok(penalty),
-            penalty => Err(section.error("tolerance", format!("gives a penalty of {penalty:?} Pa/m; give another"))),
-        },
+        (None, Some(tolerance)) => {
+            let Body::Layer(layer) = body else {
+                return Err(section.error("tolerance", "is for a [layer]; give penalty, in Pa/m"));
+            };
+            match penalty_for(tolerance, layer, materials) {
+                penalty if penalty.is_finite() && penalty > 0.0 => Ok(penalty),
+                penalty => {
+                    Err(section.error("tolerance", format!("gives a penalty of {penalty:?} Pa/m; give another")))
+                }
+            }
+        }
         (None, None) => Err(section.missing("penalty", "it in Pa/m, or tolerance")),
     }
 }

@@ -1,6 +1,8 @@
 //! What a scene says of itself.
 
-use super::{Scene, Sides, When};
+use serde::{Serialize, Serializer};
+
+use super::{Body, Layer, Material, Scene, Sides, When};
 
 impl Scene {
     /// The resolved scene as TOML: every default written out, every duration and modulus in its own key. Reading it
@@ -21,18 +23,17 @@ impl Scene {
         self.phases.iter().map(|phase| phase.steps).sum()
     }
 
-    /// The displacements to be solved for: two to a node, without those that the lower face and the sides hold, and
-    /// with the two sides counted once where they are the same nodes.
-    pub fn unknowns(&self) -> usize {
-        let [along, through] = self.layer.cells;
-        // The lowest row of nodes is clamped, so that as many rows move as there are cells.
-        let per_row = match self.layer.sides {
-            Sides::Periodic => 2 * along,
-            Sides::Free => 2 * (along + 1),
-            Sides::Roller => 2 * along,
-            Sides::Fixed => 2 * (along - 1),
-        };
-        per_row * through
+    /// The layer, where the body is one.
+    pub fn layer(&self) -> Option<&Layer> {
+        match &self.body {
+            Body::Layer(layer) => Some(layer),
+            Body::Mesh(_) => None,
+        }
+    }
+
+    /// The period along x, m, where the sides are one another's images.
+    pub fn period(&self) -> Option<f64> {
+        self.layer().filter(|layer| layer.sides == Sides::Periodic).map(|layer| layer.width)
     }
 
     /// The same scene up to the end of its first `count` phases, without a title: what the state there depends on.
@@ -57,5 +58,29 @@ impl Scene {
                 *time = time.min(end);
             }
         }
+    }
+}
+
+impl Layer {
+    /// The displacements to be solved for: two to a node, without those that the lower face and the sides hold, and
+    /// with the two sides counted once where they are the same nodes.
+    pub fn unknowns(&self) -> usize {
+        let [along, through] = self.cells;
+        // The lowest row of nodes is clamped, so that as many rows move as there are cells.
+        let per_row = match self.sides {
+            Sides::Periodic => 2 * along,
+            Sides::Free => 2 * (along + 1),
+            Sides::Roller => 2 * along,
+            Sides::Fixed => 2 * (along - 1),
+        };
+        per_row * through
+    }
+}
+
+/// A `[material]` table where one material is all there is, else `[[material]]` tables.
+pub(super) fn materials<S: Serializer>(materials: &[Material], serializer: S) -> Result<S::Ok, S::Error> {
+    match materials {
+        [only] if only.region.is_none() => only.serialize(serializer),
+        several => several.serialize(serializer),
     }
 }

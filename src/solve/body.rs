@@ -4,9 +4,10 @@ use mpi::topology::SimpleCommunicator;
 use nalgebra::{SVector, Vector4};
 
 use super::BulkFields;
-use crate::element::quad4::{self, Answer};
+use crate::element::plane::{Answer, Split};
+use crate::element::{Quadrilateral, bbar, quad4, tri3};
 use crate::error::Result;
-use crate::mesh::{Mesh, Numbering};
+use crate::mesh::{Cell, Mesh, Numbering};
 use crate::petsc::{Gather, Matrix, Pattern, Vector};
 use crate::snapshot::NaturalOrder;
 
@@ -19,21 +20,63 @@ pub struct Moduli {
     pub bulk: f64,
 }
 
-impl Moduli {
-    /// The stiffness of an element of these moduli.
-    pub fn stiffness(&self, split: &quad4::Split) -> quad4::Stiffness {
-        split.deviatoric * self.shear + split.volumetric * self.bulk
+/// What a region of the mesh is made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Region {
+    /// Instantaneous.
+    pub moduli: Moduli,
+    /// The part of the bulk that the shear modulus relaxes with.
+    pub shear_part: usize,
+    /// The part of the bulk that the bulk modulus relaxes with.
+    pub bulk_part: usize,
+}
+
+impl Region {
+    /// The moduli, each times the factor of its part.
+    pub fn relaxed(&self, factors: &[f64]) -> Moduli {
+        let Moduli { shear, bulk } = self.moduli;
+        Moduli { shear: shear * factors[self.shear_part], bulk: bulk * factors[self.bulk_part] }
     }
 }
 
-/// A mesh distributed over the ranks of a communicator, of one material.
+/// A mesh and what it is made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solid {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// What its quadrilaterals are.
+    pub quadrilateral: Quadrilateral,
+    /// What its regions are made of.
+    pub regions: Vec<Region>,
+}
+
+impl Solid {
+    /// What stands on the diagonal of held rows: a modulus, Pa.
+    pub fn diagonal(&self) -> f64 {
+        self.regions[0].moduli.shear
+    }
+
+    /// What a cell is made of.
+    pub fn region(&self, cell: usize) -> Region {
+        self.regions[usize::from(self.mesh.regions[cell])]
+    }
+
+    /// The split stiffness of a quadrilateral.
+    pub fn quadrilateral(&self, corners: [u32; 4]) -> Split<8> {
+        let points = self.mesh.points(corners);
+        match self.quadrilateral {
+            Quadrilateral::Plain => quad4::stiffness(&points),
+            Quadrilateral::MeanDilatation => bbar::stiffness(&points),
+        }
+    }
+}
+
+/// A solid distributed over the ranks of a communicator.
 pub struct Body {
-    mesh: Mesh,
+    solid: Solid,
     numbering: Numbering,
     pattern: Pattern,
     comm: SimpleCommunicator,
-    /// Instantaneous.
-    moduli: Moduli,
     /// What output needs, made when first asked for.
     recovery: Option<Recovery>,
 }
@@ -42,22 +85,33 @@ pub struct Body {
 struct Recovery {
     cells: Vec<usize>,
     /// Per cell, its corners' places in the gathered displacements (by node).
-    corners: Vec<[usize; 4]>,
+    places: Vec<Cell>,
     gather: Gather,
     gathered: usize,
 }
 
 impl Body {
-    /// Distributes the mesh.
-    pub fn new(comm: SimpleCommunicator, mesh: Mesh, moduli: Moduli) -> Result<Self> {
-        let numbering = Numbering::new(&comm, &mesh)?;
-        let pattern = numbering.pattern(&mesh);
-        Ok(Self { mesh, numbering, pattern, comm, moduli, recovery: None })
+    /// Distributes the solid.
+    pub fn new(comm: SimpleCommunicator, solid: Solid) -> Result<Self> {
+        let numbering = Numbering::new(&comm, &solid.mesh)?;
+        let pattern = numbering.pattern(&solid.mesh);
+        Ok(Self { solid, numbering, pattern, comm, recovery: None })
     }
 
     /// The mesh.
     pub fn mesh(&self) -> &Mesh {
-        &self.mesh
+        &self.solid.mesh
+    }
+
+    /// The stiffness at the instantaneous moduli.
+    pub fn elastic(&self) -> Result<Matrix> {
+        let moduli: Vec<Moduli> = self.solid.regions.iter().map(|region| region.moduli).collect();
+        self.stiffness(&moduli, self.solid.diagonal())
+    }
+
+    /// What it is made of.
+    pub fn solid(&self) -> &Solid {
+        &self.solid
     }
 
     /// Who owns what.
@@ -76,14 +130,25 @@ impl Body {
         NaturalOrder::new(&self.comm, layout, &global, 2 * self.numbering.owned.start)
     }
 
-    /// G K_dev + K K_vol, with `diagonal` for the held unknowns.
-    pub fn stiffness(&self, moduli: Moduli, diagonal: f64) -> Result<Matrix> {
+    /// G K_dev + K K_vol with the moduli of each region, and `diagonal` for the held unknowns.
+    ///
+    /// A region of zero moduli has its zeros in the matrix, so that all matrices of a body have one pattern.
+    pub fn stiffness(&self, moduli: &[Moduli], diagonal: f64) -> Result<Matrix> {
         let mut matrix = Matrix::new(&self.comm, &self.pattern)?;
         for &cell in &self.numbering.cells {
-            let stiffness = moduli.stiffness(&quad4::stiffness(&self.mesh.corners(cell)));
-            let nodes = self.mesh.cell_unknowns(cell).map(|unknown| self.numbering.global[unknown as usize]);
+            let Moduli { shear, bulk } = moduli[usize::from(self.solid.mesh.regions[cell])];
+            let global = |node: u32| self.numbering.global[self.mesh().unknown[node as usize] as usize];
             // Column-major and symmetric, so row-major too.
-            matrix.add_blocks(&nodes, stiffness.as_slice())?;
+            match self.solid.mesh.cells[cell] {
+                Cell::Triangle(corners) => {
+                    let stiffness = tri3::stiffness(&self.solid.mesh.points(corners)).with(shear, bulk);
+                    matrix.add_blocks(&corners.map(global), stiffness.as_slice())?;
+                }
+                Cell::Quadrilateral(corners) => {
+                    let stiffness = self.solid.quadrilateral(corners).with(shear, bulk);
+                    matrix.add_blocks(&corners.map(global), stiffness.as_slice())?;
+                }
+            }
         }
         matrix.assemble()?;
         matrix.fix(&self.held(), diagonal)?;
@@ -92,13 +157,13 @@ impl Body {
 
     /// The rigid-body modes' coordinates: x, z of each of this rank's nodes.
     pub fn coordinates(&self) -> Result<Vector> {
-        let mut place = vec![0; self.mesh.unknown_nodes()];
-        for (node, &unknown) in self.mesh.unknown.iter().enumerate().rev() {
+        let mut place = vec![0; self.solid.mesh.unknown_nodes()];
+        for (node, &unknown) in self.solid.mesh.unknown.iter().enumerate().rev() {
             place[unknown as usize] = node;
         }
         let mut vector = self.vector()?;
         for (entry, &unknown) in vector.view_mut()?.chunks_exact_mut(2).zip(&self.numbering.unknowns) {
-            entry.copy_from_slice(self.mesh.nodes[place[unknown as usize]].as_slice());
+            entry.copy_from_slice(self.solid.mesh.nodes[place[unknown as usize]].as_slice());
         }
         Ok(vector)
     }
@@ -114,7 +179,7 @@ impl Body {
     fn recovery(&mut self, layout: &Vector) -> Result<&mut Recovery> {
         match &mut self.recovery {
             Some(recovery) => Ok(recovery),
-            place => Ok(place.insert(Recovery::new(&self.mesh, &self.numbering, layout)?)),
+            place => Ok(place.insert(Recovery::new(&self.solid.mesh, &self.numbering, layout)?)),
         }
     }
 
@@ -123,18 +188,13 @@ impl Body {
     pub fn fields(&mut self, u: &Vector, effective: &[Vec<f64>]) -> Result<BulkFields> {
         self.recovery(u)?;
         let Some(recovery) = &self.recovery else { return Ok(BulkFields::default()) };
-        // One part answers to both moduli, or the first to shear and the second to bulk.
-        let (shear, dilatation) = (&effective[0], &effective[effective.len() - 1]);
         let mut sums = vec![(Vector4::<f64>::zeros(), 0.0); self.numbering.owned.len()];
-        for (&cell, places) in recovery.cells.iter().zip(&recovery.corners) {
-            let at = |values: &[f64]| SVector::from_fn(|row, _| values[2 * places[row / 2] + row % 2]);
-            let (u_shear, u_bulk) = (at(shear), at(dilatation));
-            let stress = quad4::corner_stress(
-                &self.mesh.corners(cell),
-                Answer { modulus: self.moduli.shear, displacement: &u_shear },
-                Answer { modulus: self.moduli.bulk, displacement: &u_bulk },
-            );
-            for (unknown, stress) in self.mesh.cell_unknowns(cell).into_iter().zip(stress) {
+        for (&cell, places) in recovery.cells.iter().zip(&recovery.places) {
+            let region = self.solid.region(cell);
+            let answers = [(region.moduli.shear, region.shear_part), (region.moduli.bulk, region.bulk_part)]
+                .map(|(modulus, part)| (modulus, effective[part].as_slice()));
+            let stress = corner_stress(&self.solid, cell, places, answers);
+            for (&unknown, stress) in self.solid.mesh.cell_unknowns(cell).corners().iter().zip(stress) {
                 if let Some(local) = self.numbering.local(unknown) {
                     sums[local].0 += stress;
                     sums[local].1 += 1.0;
@@ -143,7 +203,7 @@ impl Body {
         }
         let values = u.view()?;
         let mut fields = BulkFields::default();
-        for (node, &unknown) in self.mesh.unknown.iter().enumerate() {
+        for (node, &unknown) in self.solid.mesh.unknown.iter().enumerate() {
             if let Some(local) = self.numbering.local(unknown) {
                 fields.nodes.push(node);
                 fields.displacement.push([values[2 * local], values[2 * local + 1]]);
@@ -156,30 +216,54 @@ impl Body {
     /// The held unknowns that this rank owns, as global row numbers.
     fn held(&self) -> Vec<i32> {
         let rows = |&unknown: &u32| {
-            let (global, held) = (self.numbering.global[unknown as usize], self.mesh.held[unknown as usize]);
+            let (global, held) = (self.numbering.global[unknown as usize], self.solid.mesh.held[unknown as usize]);
             (0..2).filter(move |&component| held[component]).map(move |component| 2 * global + component as i32)
         };
         self.numbering.unknowns.iter().flat_map(rows).collect()
     }
 }
 
+/// Stress at the corners of a cell (those of a triangle first), Pa. `answers`: the shear and the bulk modulus, Pa, each
+/// with the displacements that it answers to, of which the cell's are at `places`, node by node.
+fn corner_stress(solid: &Solid, cell: usize, places: &Cell, answers: [(f64, &[f64]); 2]) -> [Vector4<f64>; 4] {
+    let mesh = &solid.mesh;
+    let entry = |values: &[f64], row: usize| values[2 * places.corners()[row / 2] as usize + row % 2];
+    match mesh.cells[cell] {
+        Cell::Triangle(corners) => {
+            let [u, v] = answers.map(|(_, values)| SVector::from_fn(|row, _| entry(values, row)));
+            let [shear, bulk] = [(answers[0].0, &u), (answers[1].0, &v)]
+                .map(|(modulus, displacement)| Answer { modulus, displacement });
+            [tri3::stress(&mesh.points(corners), shear, bulk); 4]
+        }
+        Cell::Quadrilateral(corners) => {
+            let [u, v] = answers.map(|(_, values)| SVector::from_fn(|row, _| entry(values, row)));
+            let [shear, bulk] = [(answers[0].0, &u), (answers[1].0, &v)]
+                .map(|(modulus, displacement)| Answer { modulus, displacement });
+            match solid.quadrilateral {
+                Quadrilateral::Plain => quad4::corner_stress(&mesh.points(corners), shear, bulk),
+                Quadrilateral::MeanDilatation => bbar::corner_stress(&mesh.points(corners), shear, bulk),
+            }
+        }
+    }
+}
+
 impl Recovery {
     fn new(mesh: &Mesh, numbering: &Numbering, layout: &Vector) -> Result<Self> {
-        let touches = |cell: &usize| mesh.cell_unknowns(*cell).iter().any(|&u| numbering.local(u).is_some());
+        let touches = |cell: &usize| mesh.cell_unknowns(*cell).corners().iter().any(|&u| numbering.local(u).is_some());
         let cells: Vec<usize> = (0..mesh.cells.len()).filter(touches).collect();
-        let mut unknowns: Vec<u32> = cells.iter().flat_map(|&cell| mesh.cell_unknowns(cell)).collect();
+        let mut unknowns: Vec<u32> = cells.iter().flat_map(|&cell| mesh.cell_unknowns(cell).four()).collect();
         unknowns.sort_unstable();
         unknowns.dedup();
         let mut place = vec![0; mesh.unknown_nodes()];
         for (i, &unknown) in unknowns.iter().enumerate() {
-            place[unknown as usize] = i;
+            place[unknown as usize] = i as u32;
         }
-        let corners = cells.iter().map(|&cell| mesh.cell_unknowns(cell).map(|u| place[u as usize])).collect();
+        let places = cells.iter().map(|&cell| mesh.cell_unknowns(cell).map(|u| place[u as usize])).collect();
         let indices: Vec<i32> = unknowns
             .iter()
             .map(|&unknown| numbering.global[unknown as usize])
             .flat_map(|node| [2 * node, 2 * node + 1])
             .collect();
-        Ok(Self { cells, corners, gathered: indices.len(), gather: Gather::new(layout, &indices)? })
+        Ok(Self { cells, places, gathered: indices.len(), gather: Gather::new(layout, &indices)? })
     }
 }

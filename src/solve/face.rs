@@ -186,15 +186,16 @@ impl ContactFace {
 
     /// Adds the accepted state to a snapshot; the displacements are part of the solution.
     pub fn save(&self, snapshot: &mut Snapshot) {
-        let State { surface, placement: Placement { approach, sliding, sliding_rate }, scale } = &self.accepted;
-        snapshot.put("face", vec![*approach, *sliding, *sliding_rate, *scale]);
+        let State { surface, placement: Placement { approach, sliding, sliding_rate, approach_rate }, scale } =
+            &self.accepted;
+        snapshot.put("face", vec![*approach, *sliding, *sliding_rate, *approach_rate, *scale]);
         snapshot.put("face-rate", surface.rate.clone());
     }
 
     /// Takes the accepted state, whose solution is `u`, from a snapshot.
     pub fn restore(&mut self, snapshot: &Snapshot, u: &Vector) -> Result<()> {
-        let [approach, sliding, sliding_rate, scale] = snapshot.numbers("face")?;
-        self.accepted.placement = Placement { approach, sliding, sliding_rate };
+        let [approach, sliding, sliding_rate, approach_rate, scale] = snapshot.numbers("face")?;
+        self.accepted.placement = Placement { approach, sliding, sliding_rate, approach_rate };
         self.accepted.scale = scale;
         snapshot.fill("face-rate", &mut self.accepted.surface.rate)?;
         self.gather.gather(u, &mut self.accepted.surface.displacement)

@@ -12,8 +12,10 @@ use crate::loading::{Phase, Placement};
 use crate::petsc::{Matrix, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 
-pub use body::{Body, Moduli};
-pub use condensed::{Backing, Compliance, Condensed, Following, Interior, LARGE_FACE, Relaxation, Remembering, Source};
+pub use body::{Body, Moduli, Region, Solid};
+pub use condensed::{
+    Backing, Compliance, Condensed, Following, Interior, LARGE_FACE, PeriodicColumn, Relaxation, Remembering, Source,
+};
 pub use driver::{Counts, Driver, Limits, Position};
 pub use monolithic::Monolithic;
 

@@ -227,7 +227,8 @@ mod tests {
         let phases = vec![Phase::press(0.1, 3, 1e-3 / 7.0), Phase::slide(-0.3, 1.0, 5, 2e-3)];
         let setting = Setting { friction: Some([0.2, 1e-7]), ..Setting::new(8, solid, phases) };
         let scene = setting.scene().unwrap();
-        assert_eq!((scene.material.poisson_ratio, scene.material.shear_modulus), (1.0 / 3.0, 568.498));
+        let material = &scene.materials[0];
+        assert_eq!((material.poisson_ratio, material.shear_modulus), (1.0 / 3.0, 568.498));
         assert_eq!((scene.phases[0].approach, scene.phases[1].duration), (Some(1e-3 / 7.0), 1.0 / 0.3));
         assert_eq!(scene.phases[1].motion, scene::Motion::Velocity(-0.3));
         let parabola = Setting { indenter: Indenter::Parabola(1.5), ..setting };

@@ -24,8 +24,8 @@ use crate::composition::{Form, form};
 use crate::error::{Error, Result};
 use crate::parallel::{agree, any, share_text};
 use crate::petsc::Session;
-use crate::scene;
 use crate::scene::sweep::{self, Sweep};
+use crate::scene::{self, Scene};
 
 /// With all unknowns in one system, one rank for so many of them.
 const UNKNOWNS_PER_RANK: usize = 50_000;
@@ -171,8 +171,8 @@ fn directory(arguments: &SweepArguments) -> PathBuf {
     arguments.out.clone().unwrap_or_else(stem)
 }
 
-/// Enough for the largest case. A condensed one has its unknowns on one rank.
+/// Enough for the largest layer. A condensed case has its unknowns on one rank; a mesh is not read for this.
 fn ranks_per_case(sweep: &Sweep) -> usize {
     let scenes = sweep.cases.iter().map(|case| &case.scene).filter(|scene| form(scene) == Form::Monolithic);
-    scenes.map(|scene| scene.unknowns().div_ceil(UNKNOWNS_PER_RANK)).max().unwrap_or(1)
+    scenes.filter_map(Scene::layer).map(|layer| layer.unknowns().div_ceil(UNKNOWNS_PER_RANK)).max().unwrap_or(1)
 }

@@ -13,7 +13,7 @@ use super::Sheet;
 use crate::error::{Error, Result};
 use crate::output::Status;
 use crate::output::reader::{Field, Results};
-use crate::scene::{self, Scene, Sides, Source};
+use crate::scene::{self, Scene, Source};
 
 /// A run: its scene and its results.
 #[derive(Debug)]
@@ -161,10 +161,10 @@ impl Run {
 
     /// The length after which the face repeats itself: the indenter's, or the layer's; none = it does not.
     pub fn period(&self) -> Option<f64> {
-        match (self.scene.layer.sides, &self.scene.indenter) {
-            (Sides::Periodic, scene::Indenter::Harmonic { wavelength, .. }) => Some(*wavelength),
-            (Sides::Periodic, _) => Some(self.scene.layer.width),
-            _ => None,
+        let width = self.scene.period()?;
+        match self.scene.indenter {
+            scene::Indenter::Harmonic { wavelength, .. } => Some(wavelength),
+            _ => Some(width),
         }
     }
 
@@ -182,8 +182,8 @@ impl Run {
         Ok(Interface {
             x: self.results.interface("x")?.values,
             time: self.results.interface("time")?.values,
-            width: self.scene.layer.width,
-            shift: if self.scene.layer.sides == Sides::Periodic { self.shift() } else { 0.0 },
+            period: self.scene.period().unwrap_or(f64::INFINITY),
+            shift: self.shift(),
         })
     }
 }
@@ -194,8 +194,8 @@ struct Interface {
     x: Vec<f64>,
     /// s
     time: Vec<f64>,
-    /// Of the layer, m.
-    width: f64,
+    /// After which the face is itself again, m.
+    period: f64,
     /// m
     shift: f64,
 }
@@ -208,7 +208,7 @@ impl Interface {
 
     /// Where a node is shown, m.
     fn place(&self, x: f64) -> f64 {
-        if self.shift == 0.0 { x } else { (x + self.shift).rem_euclid(self.width) - self.shift }
+        if self.shift == 0.0 { x } else { (x + self.shift).rem_euclid(self.period) - self.shift }
     }
 
     /// The profile of `field` at frame `frame`, in the order of the places.

@@ -3,7 +3,7 @@
 use super::{Run, nearest, short};
 use crate::error::Result;
 use crate::plot::{Axis, Colouring, Map, Panel, Ramp, Raster, Sheet};
-use crate::scene::Sides;
+use crate::scene::Material;
 
 /// Fields of a map along its longer side.
 const FINE: usize = 360;
@@ -57,9 +57,10 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
     Ok(Sheet { panels, columns: 2, size: panel_size(&grid) })
 }
 
-/// E(0) = 2 G(0) (1 + nu), Pa: the instantaneous Young's modulus.
+/// E(0) = 2 G(0) (1 + nu), Pa: the instantaneous Young's modulus, of several materials the largest.
 fn young(run: &Run) -> f64 {
-    2.0 * run.scene.material.shear_modulus * (1.0 + run.scene.material.poisson_ratio)
+    let of = |material: &Material| 2.0 * material.shear_modulus * (1.0 + material.poisson_ratio);
+    run.scene.materials.iter().map(of).fold(0.0, f64::max)
 }
 
 /// The frame at the end of the approach and the last one of sliding, as far as they were written.
@@ -100,7 +101,7 @@ impl Grid {
             nodes.iter().fold((f64::INFINITY, f64::NEG_INFINITY), of)
         };
         let (x, z) = (ends(0), ends(1));
-        let shift = if run.scene.layer.sides == Sides::Periodic { run.shift() } else { 0.0 };
+        let shift = run.shift();
         let (wide, high) = (x.1 - x.0, z.1 - z.0);
         let fields = |length: f64| ((FINE as f64 * length / wide.max(high)).round() as usize).max(2);
         Ok(Self {

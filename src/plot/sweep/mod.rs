@@ -18,7 +18,8 @@ const STEADY: f64 = 0.1;
 /// One case of the sweep.
 #[derive(Debug)]
 struct Case {
-    material: Material,
+    /// Of the regions or strata of the body.
+    materials: Vec<Material>,
     /// Of the indenter in the last phase, m/s.
     velocity: f64,
     /// When the indenter starts to move, s.
@@ -75,7 +76,7 @@ pub const FIGURES: [Kind; 4] = [
 ];
 
 fn materials(sweep: &Sweep) -> Sheet {
-    let solid = |model: &Model| model.cases.first().map(|case| Solid::of(&case.material, &model.label));
+    let solid = |model: &Model| model.cases.first().map(|case| Solid::of(case.material(), &model.label));
     super::material::sheet(&sweep.models.iter().filter_map(solid).collect::<Vec<_>>(), None)
 }
 
@@ -130,7 +131,12 @@ impl Case {
             .zip(run.energy("viscoelastic_dissipation"))
             .map(|(external, viscoelastic)| Energy { external, viscoelastic });
         let t0 = run.approach_time();
-        Some(Self { material: run.scene.material, velocity, t0, history: run.history, energy })
+        Some(Self { materials: run.scene.materials, velocity, t0, history: run.history, energy })
+    }
+
+    /// The material that stands for the body: the first that relaxes, if any does.
+    fn material(&self) -> &Material {
+        self.materials.iter().find(|material| !material.is_elastic()).unwrap_or(&self.materials[0])
     }
 
     /// The rows that count as steady.
@@ -155,14 +161,14 @@ impl Case {
 /// models of their own.
 fn models(cases: Vec<Case>) -> Vec<Model> {
     let (elastic, viscoelastic): (Vec<Case>, Vec<Case>) =
-        cases.into_iter().partition(|case| case.material.arms.is_empty());
+        cases.into_iter().partition(|case| case.material().is_elastic());
     let mut models: Vec<Model> = Vec::new();
     let (mut elastic, own) = if viscoelastic.is_empty() { (Vec::new(), elastic) } else { (elastic, viscoelastic) };
     for case in own {
-        match models.iter_mut().find(|model| model.cases.iter().any(|other| other.material == case.material)) {
+        match models.iter_mut().find(|model| model.cases.iter().any(|other| other.materials == case.materials)) {
             Some(model) => model.cases.push(case),
             None => {
-                let label = Solid::of(&case.material, "").label().to_owned();
+                let label = Solid::of(case.material(), "").label().to_owned();
                 let colour = PALETTE[models.len() % PALETTE.len()];
                 models.push(Model { label, colour, cases: vec![case], instantaneous: None, long_term: None });
             }
@@ -170,14 +176,17 @@ fn models(cases: Vec<Case>) -> Vec<Model> {
     }
     for model in &mut models {
         model.cases.sort_by(|a, b| a.velocity.total_cmp(&b.velocity));
-        let material = &model.cases[0].material;
+        let first = &model.cases[0];
+        let material = first.material();
         let relaxed = 1.0 - material.arms.iter().map(|arm| arm.weight).sum::<f64>();
         let (modulus, nu) = (material.shear_modulus, material.poisson_ratio);
         // Elastic forces hardly depend on the velocity: one case of many is enough.
         let mut bound = |modulus: f64| {
             let close = |case: &Case| {
-                let other = &case.material;
-                (other.shear_modulus / modulus - 1.0).abs() < 1e-3 && (other.poisson_ratio - nu).abs() < 1e-9
+                let other = case.material();
+                first.materials.len() == case.materials.len()
+                    && (other.shear_modulus / modulus - 1.0).abs() < 1e-3
+                    && (other.poisson_ratio - nu).abs() < 1e-9
             };
             let found: Vec<usize> = (0..elastic.len()).filter(|&i| close(&elastic[i])).collect();
             found.get(found.len() / 2).map(|&i| elastic.swap_remove(i))
@@ -189,7 +198,7 @@ fn models(cases: Vec<Case>) -> Vec<Model> {
     let labels: Vec<String> = models.iter().map(|model| model.label.clone()).collect();
     for model in &mut models {
         if labels.iter().filter(|label| **label == model.label).count() > 1 {
-            model.label = format!("{}, G(0) = {:.4} Pa", model.label, model.cases[0].material.shear_modulus);
+            model.label = format!("{}, G(0) = {:.4} Pa", model.label, model.cases[0].material().shear_modulus);
         }
     }
     models

@@ -46,7 +46,7 @@ enum Series {
 }
 
 /// Reads the material of a scene whose loading history visits the times of `band`. `others` are keys that may stand
-/// beside those of a material.
+/// beside those of a material: where it is, which is not read here.
 pub(in crate::scene) fn read(section: &Section, others: &[&str], band: Option<Band>) -> Result<Material> {
     let material = given(section, others)?.resolve(section, band)?;
     if let (Some(band), Some(rule)) = (band, material.poisson_rule)
@@ -244,6 +244,8 @@ impl Given {
             self.notes.push(shift_note(shift, temperature, factor));
         }
         Ok(Material {
+            region: None,
+            thickness: None,
             shear_modulus,
             poisson_ratio: self.poisson_ratio,
             arms,

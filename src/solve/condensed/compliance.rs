@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{Complex, Matrix2};
 
-use super::super::body::{Body, Moduli};
+use super::super::body::Body;
 use crate::element::quad4;
 use crate::error::Result;
 use crate::petsc::Cholesky;
@@ -21,9 +21,9 @@ pub struct Compliance {
 
 impl Compliance {
     /// By the Schur complement of a body that this rank holds whole.
-    pub fn by_schur_complement(body: &Body, moduli: Moduli) -> Result<Self> {
+    pub fn by_schur_complement(body: &Body) -> Result<Self> {
         let kept: Vec<i32> = Self::free_rows(body).into_iter().map(|(_, row)| row).collect();
-        let mut stiffness = body.stiffness(moduli, moduli.shear)?;
+        let mut stiffness = body.elastic()?;
         stiffness.declare_positive_definite()?;
         let (_, inverse) = Cholesky::with_inverse_schur(&stiffness, &kept)?;
         Ok(Self::from_free(body, &inverse))

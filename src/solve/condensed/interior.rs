@@ -4,16 +4,14 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::super::BulkFields;
-use super::super::body::{Body, Moduli};
+use super::super::body::{Body, Solid};
 use crate::error::Result;
-use crate::mesh::Mesh;
 use crate::petsc::{Cholesky, Matrix, Vector};
 
 /// A body whose interior follows its face: u_I = H u_G.
 pub struct Interior {
     comm: SimpleCommunicator,
-    mesh: Mesh,
-    moduli: Moduli,
+    solid: Solid,
     /// Made when first asked for: most scenes never do.
     recovery: Option<Recovery>,
 }
@@ -28,9 +26,9 @@ struct Recovery {
 }
 
 impl Interior {
-    /// The interior of a body of instantaneous `moduli`; costs nothing until [`Self::fields`].
-    pub fn new(comm: &SimpleCommunicator, mesh: Mesh, moduli: Moduli) -> Self {
-        Self { comm: comm.duplicate(), mesh, moduli, recovery: None }
+    /// The interior of a solid; costs nothing until [`Self::fields`].
+    pub fn new(comm: &SimpleCommunicator, solid: Solid) -> Self {
+        Self { comm: comm.duplicate(), solid, recovery: None }
     }
 
     /// How often the interior was recovered: 0 or 1 factorisation.
@@ -43,12 +41,12 @@ impl Interior {
     pub fn fields(&mut self, displacement: &[f64], effective: Option<&[f64]>) -> Result<BulkFields> {
         let recovery = match &mut self.recovery {
             Some(recovery) => recovery,
-            place => place.insert(Recovery::new(&self.comm, &self.mesh, self.moduli)?),
+            place => place.insert(Recovery::new(&self.comm, &self.solid)?),
         };
-        let u = recovery.extend(displacement, self.moduli.shear)?;
+        let u = recovery.extend(displacement, self.solid.diagonal())?;
         let around = match effective {
             Some(effective) => {
-                let y = recovery.extend(effective, self.moduli.shear)?;
+                let y = recovery.extend(effective, self.solid.diagonal())?;
                 recovery.body.around(&y)?
             }
             None => recovery.body.around(&u)?,
@@ -58,17 +56,17 @@ impl Interior {
 }
 
 impl Recovery {
-    fn new(comm: &SimpleCommunicator, mesh: &Mesh, moduli: Moduli) -> Result<Self> {
-        let body = Body::new(comm.duplicate(), mesh.clone(), moduli)?;
-        let stiffness = body.stiffness(moduli, moduli.shear)?;
+    fn new(comm: &SimpleCommunicator, solid: &Solid) -> Result<Self> {
+        let body = Body::new(comm.duplicate(), solid.clone())?;
+        let stiffness = body.elastic()?;
         let numbering = body.numbering();
-        let components = mesh.face.unknown.iter().flat_map(|&unknown| [(unknown, 0), (unknown, 1)]);
+        let components = solid.mesh.face.unknown.iter().flat_map(|&unknown| [(unknown, 0), (unknown, 1)]);
         let rows: Vec<Option<usize>> =
             components.map(|(unknown, i)| numbering.local(unknown).map(|node| 2 * node + i)).collect();
         let first = 2 * numbering.owned.start;
         let owned: Vec<i32> = rows.iter().flatten().map(|row| (first + row) as i32).collect();
         let mut inner = stiffness.duplicate()?;
-        inner.fix(&owned, moduli.shear)?;
+        inner.fix(&owned, solid.diagonal())?;
         inner.declare_positive_definite()?;
         let factor = Cholesky::new(&inner)?;
         Ok(Self { body, stiffness, factor, rows })

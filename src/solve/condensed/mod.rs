@@ -28,7 +28,7 @@ use crate::snapshot::{NaturalOrder, Snapshot};
 pub use compliance::Compliance;
 pub use following::{Following, Relaxation};
 pub use interior::Interior;
-pub use remembering::{Remembering, Source};
+pub use remembering::{PeriodicColumn, Remembering, Source};
 
 use newton::{Factor, SparseColumns};
 

@@ -14,14 +14,16 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
 
 use super::super::BulkFields;
-use super::super::body::{Body, Moduli};
+use super::super::body::{Body, Region, Solid};
 use super::super::face::ContactFace;
 use super::Backing;
 use super::compliance::Compliance;
 use crate::bulk::Bulk;
-use crate::element::quad4;
-use crate::error::{Error, Result};
+use crate::element::plane::Split;
+use crate::element::quad4::Stiffness;
+use crate::error::Result;
 use crate::interface::Residual;
+use crate::mesh::Cell;
 use crate::parallel::agree;
 use crate::petsc::{Cholesky, Matrix, Step, Vector};
 use crate::snapshot::{NaturalOrder, Snapshot};
@@ -34,14 +36,35 @@ pub enum Source {
     /// The Schur complement of the body.
     Schur,
     /// The block-circulant structure of a periodic layer of so many columns; cells from the top down.
-    Periodic {
-        /// The cells of one column.
-        cells: Vec<quad4::Split>,
-        /// Columns.
-        columns: usize,
-        /// Instantaneous; each relaxes by its own part.
-        moduli: Moduli,
-    },
+    Periodic(PeriodicColumn),
+}
+
+/// One column of a periodic layer.
+pub struct PeriodicColumn {
+    /// Its cells, from the top down.
+    cells: Vec<(Split<8>, Region)>,
+    /// How many such columns there are.
+    pub columns: usize,
+}
+
+impl PeriodicColumn {
+    /// Of a layer's mesh, whose first cells are those of one column.
+    pub fn new(solid: &Solid, [columns, rows]: [usize; 2]) -> Self {
+        let split = |cell: usize| match solid.mesh.cells[cell] {
+            Cell::Quadrilateral(corners) => Some((solid.quadrilateral(corners), solid.region(cell))),
+            Cell::Triangle(_) => None,
+        };
+        Self { cells: (0..rows).filter_map(split).collect(), columns }
+    }
+
+    /// The cells' stiffness with each part of the bulk times its factor.
+    pub fn stiffness(&self, factors: &[f64]) -> Vec<Stiffness> {
+        let with = |(split, region): &(Split<8>, Region)| {
+            let relaxed = region.relaxed(factors);
+            split.with(relaxed.shear, relaxed.bulk)
+        };
+        self.cells.iter().map(with).collect()
+    }
 }
 
 /// A body with an interior memory.
@@ -210,15 +233,9 @@ impl Interior {
                 let (factor, inverse) = Cholesky::with_inverse_schur(&self.tangent, &self.kept)?;
                 (factor, Compliance::from_free(&self.body, &inverse))
             }
-            Source::Periodic { cells, columns, moduli } => {
-                let secants = self.bulk.secants(dt);
-                let (&shear, &bulk) = secants
-                    .first()
-                    .zip(secants.last())
-                    .ok_or_else(|| Error::Internal("a bulk without parts".into()))?;
-                let relaxed = Moduli { shear: moduli.shear * shear, bulk: moduli.bulk * bulk };
-                let cells: Vec<_> = cells.iter().map(|split| relaxed.stiffness(split)).collect();
-                (Cholesky::new(&self.tangent)?, Compliance::of_periodic_columns(&cells, *columns))
+            Source::Periodic(column) => {
+                let cells = column.stiffness(&self.bulk.secants(dt));
+                (Cholesky::new(&self.tangent)?, Compliance::of_periodic_columns(&cells, column.columns))
             }
         };
         Ok(Solver { dt, factor, compliance })

@@ -1,0 +1,264 @@
+//! From the scene's body and materials to a mesh, its regions and the parts of the bulk.
+
+use std::path::Path;
+
+use mpi::topology::SimpleCommunicator;
+use nalgebra::Vector2;
+
+use crate::bulk::{Bulk, Part, Series};
+use crate::element::Quadrilateral;
+use crate::error::{Error, Result};
+use crate::mesh::gmsh::{self, Flaw, Role, Roles};
+use crate::mesh::{Cell, Face, Layer, Mesh, Sides};
+use crate::parallel::agree;
+use crate::petsc::Vector;
+use crate::rheology::Memory;
+use crate::rheology::prony::{Prony, common_times};
+use crate::scene::{self, MeshFile, Scene};
+use crate::solve::{Body, Moduli, Region};
+
+/// The mesh of the scene at `file`, on every rank. A .msh file is read by rank 0 only. Collective.
+pub fn mesh(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Mesh> {
+    match &scene.body {
+        scene::Body::Layer(layer) => Ok(layer_mesh(layer, scene)),
+        scene::Body::Mesh(mesh) => {
+            use mpi::traits::Communicator;
+            let mine = if comm.rank() == 0 { bytes(mesh) } else { Ok(Vec::new()) };
+            let mut bytes = agree(comm, mine)?;
+            crate::parallel::broadcast(comm, 0, &mut bytes);
+            file_mesh(&bytes, mesh, scene, file)
+        }
+    }
+}
+
+/// What a scene's body is, as far as it is known without a solver. A layer's mesh is not made for it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outline {
+    /// Its contact face.
+    pub face: Stretch,
+    /// The displacements to be solved for.
+    pub unknowns: usize,
+    /// Quadrilaterals and triangles.
+    pub cells: [usize; 2],
+}
+
+/// The contact face along x.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// m
+    pub from: f64,
+    /// m
+    pub to: f64,
+    /// How many edges it has.
+    pub edges: usize,
+    /// Whether its ends are the same node.
+    pub periodic: bool,
+}
+
+/// What the body of the scene at `file` is; a .msh file is read by this process.
+pub fn outline(scene: &Scene, file: &Path) -> Result<Outline> {
+    match &scene.body {
+        scene::Body::Layer(layer) => Ok(Outline {
+            face: Stretch::of_layer(layer),
+            unknowns: layer.unknowns(),
+            cells: [layer.cells[0] * layer.cells[1], 0],
+        }),
+        scene::Body::Mesh(mesh) => {
+            let mesh = file_mesh(&bytes(mesh)?, mesh, scene, file)?;
+            let triangles = mesh.cells.iter().filter(|cell| matches!(cell, Cell::Triangle(_))).count();
+            let cells = [mesh.cells.len() - triangles, triangles];
+            Ok(Outline { face: Stretch::of(scene, &mesh.face), unknowns: mesh.free_components(), cells })
+        }
+    }
+}
+
+impl Stretch {
+    /// The face of the scene's mesh.
+    pub fn of(scene: &Scene, face: &Face) -> Self {
+        match (scene.layer(), face.x.as_slice()) {
+            (Some(layer), _) => Self::of_layer(layer),
+            (None, [from, .., to]) => Self { from: *from, to: *to, edges: face.edges.len(), periodic: false },
+            // No mesh has a face without an edge.
+            (None, _) => Self { from: 0.0, to: 0.0, edges: 0, periodic: false },
+        }
+    }
+
+    fn of_layer(layer: &scene::Layer) -> Self {
+        let periodic = layer.sides == scene::Sides::Periodic;
+        Self { from: 0.0, to: layer.width, edges: layer.cells[0], periodic }
+    }
+
+    /// m
+    pub fn width(&self) -> f64 {
+        self.to - self.from
+    }
+
+    /// The mean length of an edge along x, m.
+    pub fn cell(&self) -> f64 {
+        self.width() / self.edges as f64
+    }
+}
+
+fn bytes(mesh: &MeshFile) -> Result<Vec<u8>> {
+    std::fs::read(&mesh.file).map_err(|error| Error::file(&mesh.file, format!("cannot be read: {error}")))
+}
+
+fn layer_mesh(layer: &scene::Layer, scene: &Scene) -> Mesh {
+    let sides = match layer.sides {
+        scene::Sides::Periodic => Sides::Periodic,
+        scene::Sides::Free => Sides::Free,
+        scene::Sides::Roller => Sides::Roller,
+        scene::Sides::Fixed => Sides::Fixed,
+    };
+    let thicknesses: Vec<f64> = scene.materials.iter().filter_map(|material| material.thickness).collect();
+    let layer = Layer { width: layer.width, depth: layer.depth, cells: layer.cells, grading: layer.grading, sides };
+    layer.mesh_of_strata(&thicknesses)
+}
+
+/// The mesh of a .msh file; what is wrong with it is an error of the scene, at the key that asks for it.
+fn file_mesh(bytes: &[u8], mesh: &MeshFile, scene: &Scene, file: &Path) -> Result<Mesh> {
+    let name = mesh.file.file_name().unwrap_or_default().to_string_lossy();
+    let roles = Roles {
+        contact: mesh.contact.clone(),
+        fixed: mesh.fixed.clone(),
+        roller: mesh.roller.clone(),
+        regions: scene.materials.iter().filter_map(|material| material.region.clone()).collect(),
+    };
+    let built = gmsh::read(bytes).and_then(|contents| gmsh::build(&contents, &roles)).map_err(|flaw| {
+        let (role, reason) = match flaw {
+            Flaw::File(reason) => return Error::scene(file, "mesh.file", format!("{name}: {reason}")),
+            Flaw::Unfit(role, reason) => (role, reason),
+            Flaw::Unknown(role, known) => (role, unknown(&name, role, &roles, &known)),
+        };
+        let key = match role {
+            Role::Contact => "mesh.contact".to_owned(),
+            Role::Fixed(i) => format!("mesh.fixed.{i}"),
+            Role::Roller(i) => format!("mesh.roller.{i}"),
+            Role::Region(i) => format!("material.{}.region", roles.regions[i]),
+        };
+        Error::scene(file, key, reason)
+    })?;
+    depth_allows(&built, scene, file)?;
+    Ok(built)
+}
+
+/// The message for a name that the file does not have.
+fn unknown(file: &str, role: Role, roles: &Roles, known: &[String]) -> String {
+    let (kind, name) = match role {
+        Role::Contact => ("curve", &roles.contact),
+        Role::Fixed(i) => ("curve", &roles.fixed[i]),
+        Role::Roller(i) => ("curve", &roles.roller[i]),
+        Role::Region(i) => ("surface", &roles.regions[i]),
+    };
+    let names: Vec<&str> = known.iter().map(String::as_str).collect();
+    let advice = match names.is_empty() {
+        true => format!(
+            "it names none: give the geometry a Physical {} and mesh again",
+            if kind == "curve" { "Curve" } else { "Surface" }
+        ),
+        false => scene::advice(name, &names, "it has"),
+    };
+    format!("{file} has no physical {kind} {name:?}; {advice}")
+}
+
+/// The indenter does not pass the lowest point of the body.
+fn depth_allows(mesh: &Mesh, scene: &Scene, file: &Path) -> Result<()> {
+    let range = |list: &mut dyn Iterator<Item = &Vector2<f64>>| {
+        list.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), node| (low.min(node.y), high.max(node.y)))
+    };
+    let (low, _) = range(&mut mesh.nodes.iter());
+    let (_, top) = range(&mut mesh.face.unknown.iter().map(|&node| &mesh.nodes[node as usize]));
+    let depth = top - low;
+    match scene.phases.iter().find(|phase| phase.approach.is_some_and(|approach| approach >= depth)) {
+        Some(phase) => Err(Error::scene(
+            file,
+            format!("phase.{}.approach", phase.name),
+            format!("must be less than the height of the body below its contact face ({depth:.6e} m)"),
+        )),
+        None => Ok(()),
+    }
+}
+
+/// What the scene's quadrilaterals are.
+pub fn quadrilateral(scene: &Scene) -> Quadrilateral {
+    let element = match &scene.body {
+        scene::Body::Layer(layer) => layer.element,
+        scene::Body::Mesh(mesh) => mesh.element,
+    };
+    match element {
+        scene::Element::Quad4 => Quadrilateral::Plain,
+        scene::Element::Quad4Bbar => Quadrilateral::MeanDilatation,
+    }
+}
+
+/// The materials as the bulk sees them: one part for each way of relaxing, whatever modulus and region relax so.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Materials {
+    /// What each region is made of.
+    pub regions: Vec<Region>,
+    /// The relaxation times of all arms, s.
+    pub times: Vec<f64>,
+    /// How each part relaxes; none = elastic.
+    pub series: Vec<Option<Series>>,
+    /// How the arms are updated.
+    pub memory: Memory,
+}
+
+impl Materials {
+    /// Of the scene's materials.
+    pub fn new(scene: &Scene) -> Self {
+        let all: Vec<Prony> =
+            scene.materials.iter().flat_map(|material| [material.shear_series(), material.bulk_series()]).collect();
+        let times = common_times(&all.iter().collect::<Vec<_>>());
+        let mut series: Vec<Option<Series>> = Vec::new();
+        let mut part = |wanted: Option<Series>| {
+            series.iter().position(|known| *known == wanted).unwrap_or_else(|| {
+                series.push(wanted);
+                series.len() - 1
+            })
+        };
+        let region = |material: &scene::Material| Region {
+            moduli: moduli(material),
+            shear_part: part(series_over(&material.shear_series(), &times)),
+            bulk_part: part(series_over(&material.bulk_series(), &times)),
+        };
+        let regions = scene.materials.iter().map(region).collect();
+        let memory = scene.materials.iter().find(|material| !material.is_elastic()).map(|material| material.memory);
+        let memory = match memory {
+            Some(scene::Memory::BackwardEuler) => Memory::BackwardEuler,
+            _ => Memory::Exponential,
+        };
+        Self { regions, times, series, memory }
+    }
+
+    /// Whether all moduli of all regions relax in one way, so that the interior follows the face for all time.
+    pub fn relax_alike(&self) -> bool {
+        self.series.len() == 1
+    }
+
+    /// The body at rest. The first part carries the diagonal of the held unknowns.
+    pub fn bulk(&self, body: &Body, layout: &Vector) -> Result<Bulk> {
+        let part = |(p, series): (usize, &Option<Series>)| {
+            let share = |region: &Region| Moduli {
+                shear: if region.shear_part == p { region.moduli.shear } else { 0.0 },
+                bulk: if region.bulk_part == p { region.moduli.bulk } else { 0.0 },
+            };
+            let moduli: Vec<Moduli> = self.regions.iter().map(share).collect();
+            let diagonal = if p == 0 { self.regions[0].moduli.shear } else { 0.0 };
+            Ok(Part { stiffness: body.stiffness(&moduli, diagonal)?, series: series.clone() })
+        };
+        let parts = self.series.iter().enumerate().map(part).collect::<Result<_>>()?;
+        Bulk::new(parts, self.times.clone(), self.memory, layout)
+    }
+}
+
+/// K = 2 G (1 + nu) / (3 (1 - 2 nu)), instantaneous.
+fn moduli(material: &scene::Material) -> Moduli {
+    let (g, nu) = (material.shear_modulus, material.poisson_ratio);
+    Moduli { shear: g, bulk: 2.0 * g * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu)) }
+}
+
+/// A series over a list of relaxation times, s; none where nothing relaxes.
+fn series_over(prony: &Prony, times: &[f64]) -> Option<Series> {
+    (!prony.arms.is_empty()).then(|| Series { long_term: prony.long_term(), weights: prony.weights_over(times) })
+}

@@ -1,0 +1,128 @@
+//! The tangent against differences, and the totals against integrals.
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+use crate::mesh::{Layer, Sides};
+use crate::profile::Harmonic;
+
+fn interface(quadrature: Quadrature, sides: Sides) -> Interface {
+    let layer = Layer { width: 1.0, depth: 1.0, cells: [8, 1], grading: 1.0, sides };
+    let profile = Box::new(Harmonic { amplitude: 0.01, wavelength: 1.0 });
+    let friction = Some(Friction::coulomb_tanh(0.3, 0.02));
+    Interface::new(layer.mesh().face, Laws { profile, penalty: 50.0, friction }, quadrature)
+}
+
+fn placement() -> Placement {
+    Placement { approach: 0.012, sliding: 0.13, sliding_rate: 0.05, approach_rate: 0.02 }
+}
+
+/// A wavy surface whose rates follow its displacements at `shift`.
+fn surface(nodes: usize, shift: f64, perturb: (usize, f64)) -> Surface {
+    let mut displacement: Vec<f64> = (0..2 * nodes).map(|i| 1e-3 * (1.7 * i as f64).sin()).collect();
+    displacement[perturb.0] += perturb.1;
+    let rate = displacement.iter().map(|u| shift * u).collect();
+    Surface { displacement, rate }
+}
+
+/// The face of eight edges bent to an arch.
+fn arch() -> Face {
+    let mut face = interface(Quadrature::Nodal, Sides::Free).face;
+    face.recess = face.x.iter().map(|x| 0.6 * (x - 0.45).powi(2)).collect();
+    for edge in &mut face.edges {
+        let [a, b] = edge.ends;
+        let along = Vector2::new(face.x[b] - face.x[a], face.recess[a] - face.recess[b]);
+        (edge.length, edge.tangent) = (along.norm(), along.normalize());
+    }
+    face
+}
+
+/// On a curved face too: the tangent is the derivative, and the totals are the resultants of the nodal forces, up
+/// to the horizontal part of the pressure.
+#[test]
+fn a_curved_face_is_consistent() {
+    for quadrature in [Quadrature::Nodal, Quadrature::Gauss] {
+        let laws = interface(quadrature, Sides::Free).laws;
+        let mut interface = Interface::new(arch(), laws, quadrature);
+        assert_eq!(interface.points.len(), 16);
+        let placement = Placement { approach: 0.1, ..placement() };
+        assert_tangent(&mut interface, placement);
+        let surface = surface(9, 0.0, (0, 0.0));
+        let mut residual = Residual::new();
+        interface.residual(placement, &surface, &mut residual).unwrap();
+        let resultant: Vector2<f64> = residual.iter().sum();
+        let totals = interface.totals(placement, &surface).unwrap();
+        assert!(totals.normal_force > 0.1 && totals.contact_fraction > 0.3);
+        assert!((resultant.y - totals.normal_force).abs() < 1e-14);
+    }
+}
+
+/// A flat indenter over an arch: the clearance is the depth below the summit, projected on the normal.
+#[test]
+fn elevation_of_the_face_enters_the_gap() {
+    struct Flat;
+    impl Profile for Flat {
+        fn at(&self, _: f64) -> Result<Elevation> {
+            Ok(Elevation { height: 0.0, slope: 0.0 })
+        }
+    }
+    let laws = Laws { profile: Box::new(Flat), penalty: 50.0, friction: None };
+    let mut face = arch();
+    let frames: Vec<f64> = face.edges.iter().map(|edge| edge.tangent.x).collect();
+    face.recess[0] = 0.2;
+    let recess = face.recess.clone();
+    let interface = Interface::new(face, laws, Quadrature::Nodal);
+    let fields = interface.fields(Placement { approach: 0.01, ..placement() }, &Surface::at_rest(9)).unwrap();
+    assert!((fields.gap[0] - 0.19 * frames[0]).abs() < 1e-15);
+    assert!((fields.gap[8] - (recess[8] - 0.01) * frames[7]).abs() < 1e-15);
+}
+
+/// The whole face's tangent against central differences, for both rules, on open and closed faces.
+#[test]
+fn tangent_is_the_derivative_of_the_residual() {
+    for (quadrature, sides) in
+        [(Quadrature::Nodal, Sides::Free), (Quadrature::Gauss, Sides::Free), (Quadrature::Gauss, Sides::Periodic)]
+    {
+        assert_tangent(&mut interface(quadrature, sides), placement());
+    }
+}
+
+fn assert_tangent(interface: &mut Interface, placement: Placement) {
+    let (nodes, shift, step) = (interface.face.x.len(), 10.0, 1e-7);
+    let mut tangent = Tangent::default();
+    interface.tangent(placement, &surface(nodes, shift, (0, 0.0)), shift, &mut tangent).unwrap();
+    let mut dense = nalgebra::DMatrix::<f64>::zeros(2 * nodes, 2 * nodes);
+    for (node, block) in tangent.diagonal.iter().enumerate() {
+        dense.view_mut((2 * node, 2 * node), (2, 2)).copy_from(block);
+    }
+    for (edge, [forward, backward]) in interface.face.edges.clone().iter().zip(&tangent.coupling) {
+        let [a, b] = edge.ends;
+        dense.view_mut((2 * a, 2 * b), (2, 2)).copy_from(forward);
+        dense.view_mut((2 * b, 2 * a), (2, 2)).copy_from(backward);
+    }
+    for column in 0..2 * nodes {
+        let mut at = |h: f64| {
+            let mut out = Residual::new();
+            interface.residual(placement, &surface(nodes, shift, (column, h)), &mut out).unwrap();
+            out
+        };
+        let (plus, minus) = (at(step), at(-step));
+        for row in 0..2 * nodes {
+            let numeric = (plus[row / 2][row % 2] - minus[row / 2][row % 2]) / (2.0 * step);
+            assert!((numeric - dense[(row, column)]).abs() < 1e-6, "{row} {column}");
+        }
+    }
+}
+
+/// Both rules give the exact force of a linear pressure over the face in full contact.
+#[test]
+fn totals_integrate_the_tractions() {
+    for quadrature in [Quadrature::Nodal, Quadrature::Gauss] {
+        let mut interface = interface(quadrature, Sides::Periodic);
+        let place = Placement { approach: 0.1, sliding: 0.0, sliding_rate: 1e3, approach_rate: 0.0 };
+        let totals = interface.totals(place, &Surface::at_rest(8)).unwrap();
+        // p = alpha (D - g0 (1 - cos)), whose mean is alpha (D - g0).
+        assert!((totals.normal_force - 50.0 * 0.09).abs() < 1e-13);
+        assert!((totals.tangential_force - 0.3 * 50.0 * 0.09).abs() < 1e-13);
+        assert_eq!((totals.contact_fraction, totals.stick_fraction), (1.0, 0.0));
+    }
+}

@@ -1,0 +1,96 @@
+//! Gmsh .msh files, versions 2.2 and 4.1 in ASCII, as meshes.
+//!
+//! Gmsh reference manual, "MSH file format" (4.1) and "MSH file format version 2 (Legacy)" (2.2). What the file must
+//! hold: first-order triangles and quadrilaterals in a plane, and named physical curves of which one is the contact
+//! face. Files are read on one rank and parsed on all.
+
+mod boundary;
+mod build;
+mod read;
+mod text;
+mod v2;
+mod v4;
+
+#[cfg(test)]
+mod tests;
+
+pub use build::{Roles, build};
+pub use read::read;
+
+/// What a file holds, as it stands there.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Contents {
+    /// The nodes.
+    nodes: Vec<Node>,
+    /// Lines, triangles and quadrilaterals.
+    elements: Vec<Element>,
+    /// The physical groups: dimension, number, name.
+    names: Vec<(usize, i64, String)>,
+    /// Lists of numbers of physical groups that elements refer to.
+    groups: Vec<Vec<i64>>,
+}
+
+/// A node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Node {
+    /// Its number in the file.
+    tag: u64,
+    /// m
+    place: [f64; 3],
+}
+
+/// An element.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Element {
+    /// Its number in the file.
+    tag: u64,
+    kind: Kind,
+    /// Numbers of its nodes; the first `kind.nodes()` count.
+    nodes: [u64; 4],
+    /// Index into [`Contents::groups`].
+    group: usize,
+}
+
+/// The elements that are taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Line,
+    Triangle,
+    Quadrilateral,
+}
+
+impl Kind {
+    fn nodes(self) -> usize {
+        match self {
+            Self::Line => 2,
+            Self::Triangle => 3,
+            Self::Quadrilateral => 4,
+        }
+    }
+}
+
+/// What is wrong with a file, or with what it is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Flaw {
+    /// In the file; the text says the line or the element.
+    File(String),
+    /// No physical group of this name; the file's names of that dimension.
+    Unknown(Role, Vec<String>),
+    /// A physical group that cannot be what it is asked to be.
+    Unfit(Role, String),
+}
+
+/// What a name was given for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// The contact face.
+    Contact,
+    /// The i-th of the fixed curves.
+    Fixed(usize),
+    /// The i-th of the rollers.
+    Roller(usize),
+    /// The i-th region.
+    Region(usize),
+}
+
+type Outcome<T> = std::result::Result<T, Flaw>;

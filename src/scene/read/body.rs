@@ -1,0 +1,142 @@
+//! The deformable body: the `[layer]` or `[mesh]` table, and which material fills what of it.
+
+use std::path::Path;
+
+use super::material;
+use crate::error::Result;
+use crate::rheology::Band;
+use crate::scene::keys::{Quantity, Section};
+use crate::scene::{Body, Element, Layer, Material, MeshFile, Sides};
+
+const ELEMENTS: [(&str, Element); 2] = [("q4", Element::Quad4), ("q4_bbar", Element::Quad4Bbar)];
+
+/// One of the two tables; `file` is the scene's.
+pub(super) fn read(root: &Section, file: &Path) -> Result<Body> {
+    match (root.optional_section("layer")?, root.optional_section("mesh")?) {
+        (Some(_), Some(_)) => Err(root.error("mesh", "give [layer] or [mesh], not both")),
+        (Some(section), None) => Ok(Body::Layer(layer(&section)?)),
+        (None, Some(section)) => Ok(Body::Mesh(mesh(&section, file)?)),
+        (None, None) => Err(root.missing("layer", "the [layer] table, or [mesh]")),
+    }
+}
+
+fn layer(section: &Section) -> Result<Layer> {
+    const LENGTH: Quantity = Quantity::positive("a positive length in m");
+    // Beyond these the cells at one face have no height to speak of.
+    const GRADING: Quantity =
+        Quantity { what: "a ratio of cell heights from 1e-6 to 1e6", accepts: |ratio| (1e-6..=1e6).contains(&ratio) };
+    const SIDES: [(&str, Sides); 4] =
+        [("periodic", Sides::Periodic), ("free", Sides::Free), ("roller", Sides::Roller), ("fixed", Sides::Fixed)];
+
+    section.only(&["width", "depth", "cells", "grading", "sides", "element"])?;
+    Ok(Layer {
+        width: section.number("width", LENGTH)?,
+        depth: section.number("depth", LENGTH)?,
+        cells: section.pair(
+            "cells",
+            "two whole numbers, each at least 1: [along the face, through the depth]",
+            super::COUNT,
+        )?,
+        grading: section.optional_number("grading", GRADING)?.unwrap_or(1.0),
+        sides: section.choice("sides", &SIDES, &[])?,
+        element: element(section)?,
+    })
+}
+
+fn mesh(section: &Section, scene: &Path) -> Result<MeshFile> {
+    const FILE: &str = "the path of a Gmsh .msh file, relative to the scene";
+    const CONTACT: &str = "the name of the physical curve that is the contact face";
+
+    section.later(&[("sides", "name the curves that are held: fixed, roller")])?;
+    section.only(&["file", "contact", "fixed", "roller", "element"])?;
+    let text = |key, what| section.optional_text(key, what)?.ok_or_else(|| section.missing(key, what));
+    let relative = text("file", FILE)?;
+    let joined = scene.parent().unwrap_or(Path::new("")).join(relative);
+    // Only an empty path has no absolute form, or a directory that is gone.
+    let file =
+        std::path::absolute(&joined).map_err(|error| section.error("file", format!("must be {FILE}: {error}")))?;
+    let (contact, fixed) = (text("contact", CONTACT)?, names(section, "fixed")?);
+    if fixed.is_empty() {
+        let wrong = if section.has("fixed") { "empty" } else { "missing" };
+        let reason = format!("{wrong}; give the names of the physical curves that are held, so that the body stays");
+        return Err(section.error("fixed", reason));
+    }
+    Ok(MeshFile { file, contact, fixed, roller: names(section, "roller")?, element: element(section)? })
+}
+
+fn element(section: &Section) -> Result<Element> {
+    Ok(section.optional_choice("element", &ELEMENTS, &[])?.unwrap_or(Element::Quad4))
+}
+
+/// An array of names of physical curves, each once; empty when absent.
+fn names(section: &Section, key: &str) -> Result<Vec<String>> {
+    const WHAT: &str = "an array of names of physical curves";
+
+    let mut names: Vec<String> = Vec::new();
+    for (index, value) in section.values(key, WHAT)?.iter().enumerate() {
+        let at = format!("{key}.{index}");
+        match value.as_str() {
+            Some(name) if names.iter().any(|before| before == name) => {
+                return Err(section.error(&at, format!("{name:?} is in the list already")));
+            }
+            Some(name) => names.push(name.to_owned()),
+            None => return Err(section.must_be(&at, "the name of a physical curve", value)),
+        }
+    }
+    Ok(names)
+}
+
+/// `[material]`, or one `[[material]]` for each stratum of a layer or region of a mesh, in a loading history that visits
+/// the times of `band`.
+pub(super) fn materials(root: &Section, body: &Body, band: Option<Band>) -> Result<Vec<Material>> {
+    let Ok(sections) = root.sections("material", "") else {
+        return Ok(vec![filling(&root.section("material")?, (body, true), band)?]);
+    };
+    let count = sections.len();
+    let mut list: Vec<Material> = Vec::new();
+    for (index, section) in sections.into_iter().enumerate() {
+        let region = section.optional_text("region", REGION)?;
+        let known = list.iter().position(|other| region.is_some() && other.region == region);
+        if let Some(first) = known {
+            return Err(section.error("region", format!("is the region of material {first} too; give another")));
+        }
+        let section = match &region {
+            Some(name) => section.called(format!("material.{name}")),
+            None => section,
+        };
+        let material = filling(&section, (body, index + 1 == count), band)?;
+        if matches!(body, Body::Mesh(_)) && region.is_none() && count > 1 {
+            return Err(section.missing("region", REGION));
+        }
+        list.push(material);
+    }
+    if list.is_empty() { Err(root.missing("material", "the [material] table")) } else { Ok(list) }
+}
+
+const REGION: &str = "the name of the physical surface that it fills";
+
+/// A material and what it fills of the body; `last` if none follows.
+fn filling(section: &Section, (body, last): (&Body, bool), band: Option<Band>) -> Result<Material> {
+    let material = material::read(section, &["region", "thickness"], band)?;
+    let (region, thickness) = (section.optional_text("region", REGION)?, thickness(section, body, last)?);
+    Ok(Material { region, thickness, ..material })
+}
+
+/// The thickness of a stratum, m: of all but the lowest.
+fn thickness(section: &Section, body: &Body, last: bool) -> Result<Option<f64>> {
+    const THICKNESS: Quantity = Quantity::positive("a positive thickness in m, from the contact face down");
+
+    match body {
+        Body::Mesh(_) if section.has("thickness") => {
+            Err(section.error("thickness", "is for the strata of a [layer]; give region, a physical surface"))
+        }
+        Body::Layer(_) if section.has("region") => {
+            Err(section.error("region", "is for a [mesh]; give thickness, that of a stratum of the layer"))
+        }
+        Body::Layer(_) if last && section.has("thickness") => {
+            Err(section.error("thickness", "remove it: the last material fills the rest of the layer"))
+        }
+        Body::Layer(_) if !last => section.number("thickness", THICKNESS).map(Some),
+        _ => Ok(None),
+    }
+}
