@@ -16,11 +16,11 @@ use crate::interface::{Interface, Laws};
 use crate::loading::{self, Motion, Phase};
 use crate::mesh::Mesh;
 use crate::parallel::{agree, share_numbers};
-use crate::petsc::{Linear, Matrix, Settings, Vector};
+use crate::petsc::{Integrator, Linear, Matrix, Settings, Vector};
 use crate::profile::Profile;
 use crate::scene::{self, Scene, When};
 use crate::solve::{
-    Backing, Body, Compliance, Condensed, Following, Interior, LARGE_FACE, Limits, Monolithic, PeriodicColumn,
+    Backing, Body, Compliance, Condensed, Following, Interior, LARGE_FACE, MAX_NEWTON, Monolithic, PeriodicColumn,
     Relaxation, Remembering, Solid, Source, TransientProblem,
 };
 
@@ -38,8 +38,8 @@ pub struct Problem {
     pub u: Vector,
     /// The loading history.
     pub phases: Vec<Phase>,
-    /// How TS and SNES are set.
-    pub settings: Settings,
+    /// TS and SNES, ready to solve it.
+    pub integrator: Integrator,
     /// The body's mesh, for output.
     pub mesh: Mesh,
 }
@@ -107,8 +107,9 @@ fn monolithic(
     if linear == Linear::Cholesky {
         tangent.declare_positive_definite()?;
     }
+    let integrator = integrator(comm, linear, &mut tangent)?;
     let strategy = Box::new(Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?);
-    Ok(Problem { strategy, tangent, u, phases: phases(scene), settings: settings(linear), mesh })
+    Ok(Problem { strategy, tangent, u, phases: phases(scene), integrator, mesh })
 }
 
 fn following(
@@ -156,9 +157,10 @@ fn condensed<B: Backing + 'static>(
 ) -> Result<Problem> {
     let held: Vec<[bool; 2]> = mesh.face.unknown.iter().map(|&unknown| mesh.held[unknown as usize]).collect();
     let linear = if 2 * held.len() > LARGE_FACE { Linear::OwnIterative } else { Linear::Own };
-    let tangent = Matrix::shell(comm, u.local_len())?;
+    let mut tangent = Matrix::shell(comm, u.local_len())?;
+    let integrator = integrator(comm, linear, &mut tangent)?;
     let strategy = Box::new(Condensed::new(interface, backing, &u, &held, scene.solver.tolerance)?);
-    Ok(Problem { strategy, tangent, u, phases: phases(scene), settings: settings(linear), mesh })
+    Ok(Problem { strategy, tangent, u, phases: phases(scene), integrator, mesh })
 }
 
 /// x, z of each face node, on rank 0.
@@ -187,9 +189,8 @@ fn periodic_column(scene: &Scene, solid: &Solid) -> Option<PeriodicColumn> {
     Some(PeriodicColumn::new(solid, layer.cells))
 }
 
-fn settings(linear: Linear) -> Settings {
-    let Limits { max_newton, max_cuts } = Limits::default();
-    Settings { linear, max_newton, max_cuts }
+fn integrator(comm: &SimpleCommunicator, linear: Linear, tangent: &mut Matrix) -> Result<Integrator> {
+    Integrator::new(comm, Settings { linear, max_newton: MAX_NEWTON }, tangent)
 }
 
 fn friction(friction: &scene::Friction) -> Friction {

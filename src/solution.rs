@@ -25,11 +25,11 @@ pub struct Solution {
 
 /// Solves a scene on all ranks of `comm`.
 pub fn solve(comm: &SimpleCommunicator, scene: &Scene) -> Result<Solution> {
-    let Problem { mut strategy, mut tangent, mut u, phases, settings, mesh } =
+    let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, mesh } =
         composition::build(comm, scene, Path::new(""))?;
     let mut collected = Collected { history: vec![HistoryRow::default()], ends: Vec::new() };
     let mut driver = Driver::new(strategy.as_mut(), &mut collected, &phases);
-    driver.run(comm, settings, &mut tangent, &mut u)?;
+    driver.run(&mut integrator, &mut tangent, &mut u)?;
     let counts = driver.counts();
     Ok(Solution { x: mesh.face.x, history: collected.history, ends: collected.ends, counts })
 }

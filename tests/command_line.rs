@@ -252,6 +252,27 @@ fn petsc_options() {
     assert_eq!(outcome.history("normal_force"), quiet.history("normal_force"));
 }
 
+/// Words after `--` that are no options, and values that PETSc does not take, are errors of the command line, found
+/// before anything is written.
+#[test]
+fn wrong_petsc_options() {
+    for (options, words) in [
+        ("-ksp_type frob", "KSP type frob"),
+        ("-pc_factor_mat_solver_type frob", "solver type frob"),
+        ("-snes_max_it many", "many has no integer value"),
+        ("ksp_type gmres", "\"ksp_type\" after -- is neither a PETSc option"),
+        ("-ksp_rtol 1e-3 1e-4", "\"1e-4\" after --"),
+    ] {
+        for ranks in [1, 2] {
+            let outcome = small().set("solver.strategy=\"monolithic\"").petsc(options).ranks(ranks).run();
+            assert_eq!(outcome.code, 2, "{options}: {outcome:?}");
+            outcome.assert_single_message(words);
+            assert_eq!((outcome.stdout.as_str(), names(outcome.directory.path())), ("", vec!["scene.toml".to_owned()]));
+        }
+    }
+    small().set("solver.strategy=\"monolithic\"").petsc("-ksp_type gmres -ksp_rtol 1e-10").done();
+}
+
 /// The directory that a scene is in is left alone; the default result is the scene's stem in the current directory.
 #[test]
 fn default_output_is_in_the_current_directory() {

@@ -101,12 +101,12 @@ impl Observer for Told {
 
 /// Runs a problem over its phases.
 fn run(world: &SimpleCommunicator, scene: &Scene, problem: Problem) -> Result<Told> {
-    let Problem { mut strategy, mut tangent, mut u, phases, settings, .. } = problem;
+    let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, .. } = problem;
     // On several ranks the condensed form leaves the interior to MUMPS when it is asked for, after the solve.
     let face_only = scene.solver.strategy == Strategy::Condensed && world.size() > 1;
     let mut told = Told { face_only, ..Told::default() };
     let mut driver = Driver::new(strategy.as_mut(), &mut told, &phases);
-    driver.run(world, settings, &mut tangent, &mut u)?;
+    driver.run(&mut integrator, &mut tangent, &mut u)?;
     let counts = driver.counts();
     assert_eq!(counts.steps, told.times.len());
     Ok(told)
@@ -167,7 +167,7 @@ fn newton_fails(world: &SimpleCommunicator, scene: &Scene) {
     let scene = &Scene { friction, ..scene.clone() };
     let met = (2..12).find_map(|most| {
         let mut problem = composition::build(world, scene, Path::new("scene.toml")).unwrap();
-        problem.settings.max_newton = most;
+        problem.integrator.set_max_newton(most).unwrap();
         run(world, scene, problem).ok()
     });
     let met = met.unwrap();

@@ -88,18 +88,22 @@ fn steady(velocity: f64, rule: PoissonRule) -> Steady {
 
 /// Pressed in 10 s, then slid for `seconds` at two steps per cell; (N_z, integral of p h') over the last cell passed.
 fn slid(cells: usize, velocity: f64, rule: &str, seconds: f64) -> [f64; 2] {
+    slide(square(SLIDING, cells).set(format!("material.poisson_rule=\"{rule}\"")), (cells, 2), velocity, seconds)
+}
+
+/// The same of any scene with a face of `cells`, at `steps` per cell.
+fn slide(scene: Run, (cells, steps): (usize, usize), velocity: f64, seconds: f64) -> [f64; 2] {
     let passed = (seconds * velocity * cells as f64).ceil();
-    let outcome = square(SLIDING, cells)
+    let outcome = scene
         .set("material.poisson_ratio=0.3")
-        .set(format!("material.poisson_rule=\"{rule}\""))
         .set(format!("friction.regularisation={}", 0.01 * velocity))
         .set("phase.indent.steps=20")
         .set(format!("phase.slide.velocity={velocity}"))
         .set(format!("phase.slide.distance={}", passed / cells as f64))
-        .set(format!("phase.slide.steps={}", 2 * passed as usize))
+        .set(format!("phase.slide.steps={}", steps * passed as usize))
         .set("output.interface_every=0")
         .done();
-    mean_of_last(&outcome, 2)
+    mean_of_last(&outcome, steps)
 }
 
 /// The means of N_z and of the hysteretic force over the last rows.
@@ -124,11 +128,10 @@ fn steady_sliding_table() {
     }
 }
 
-/// 1 m/s and the limit of slow sliding, an elastic layer of the relaxed modulus. At 1 m/s the coefficient is the small
-/// remainder of two large ones (0.583e-4 against 6.8e-4 at 0.1 m/s): 0.6 % of it is left at 128 cells, 2 % at 64, with
-/// a penalty of 1e8 Pa/m; 0.5 % is met for N_z.
+/// The limit of slow sliding, an elastic layer of the relaxed modulus, within 0.5 % of VERIFY.md's row at 128 x 128
+/// cells and a penalty of 1e8 Pa/m.
 #[test]
-fn fast_and_slow_sliding() {
+fn slow_sliding() {
     let slow = square(SLIDING, 128)
         .set("material.poisson_ratio=0.3")
         .set("material.arms=[]")
@@ -141,10 +144,32 @@ fn fast_and_slow_sliding() {
     let [n, p] = mean_of_last(&slow, 2);
     println!("v -> 0: N {n:.6}, ratio {:.4e}", p / n);
     assert!(off(n, 0.49498).abs() < 5e-3 && off(p / n, -1.138e-4).abs() < 5e-3, "{n} {}", p / n);
+}
 
-    let [n, p] = slid(64, 1.0, "constant_ratio", 12.0);
+/// Fast sliding with a penalty of 1e8 Pa/m. At 1 m/s the coefficient is the small remainder of two large ones (0.583e-4
+/// against 6.8e-4 at 0.1 m/s): within 0.5 % of VERIFY.md's row with 256 cells along the face and 64 graded rows
+/// (measured: N_z -0.05 %, coefficient -0.1 %; 0.6 % with 128). Toward the limit of infinite speed, which the oracle meets
+/// (src/oracle/steady.rs), the coefficient comes as 1/v: at 10 m/s it is 16 % off the limit's -1.017e-4, and the program
+/// is held to the oracle there (measured: -0.9 %, -1.7 % with half the cells); N_z is within 0.5 % of the limit (measured:
+/// -0.05 %).
+#[test]
+fn fast_sliding() {
+    let settings = |cells: usize, rows: usize| {
+        Run::new(SLIDING)
+            .set(format!("layer.cells=[{cells},{rows}]"))
+            .set("layer.grading=8.0")
+            .set("contact.penalty=1e8")
+    };
+    let [n, p] = slide(settings(256, 64), (256, 2), 1.0, 8.0);
     println!("v = 1 m/s: N {n:.6}, ratio {:.4e}", p / n);
-    assert!(off(n, 0.59554).abs() < 5e-3 && off(p / n, 0.583e-4).abs() < 3e-2, "{n} {}", p / n);
+    assert!(off(n, 0.59554).abs() < 5e-3 && off(p / n, 0.583e-4).abs() < 5e-3, "{n} {}", p / n);
+
+    let [n, p] = slide(settings(128, 32), (128, 1), 10.0, 8.0);
+    let exact = Sliding { softness: 1e-8, ..sliding(10.0, PoissonRule::ConstantRatio) };
+    let exact = exact.solve(512, |x| SURFACE.at(x), Load::Approach(APPROACH)).unwrap();
+    let ratio = exact.hysteretic / exact.normal;
+    println!("v = 10 m/s: N {n:.6} ({:.6}), ratio {:.4e} ({ratio:.4e})", exact.normal, p / n);
+    assert!(off(n, 0.59715).abs() < 5e-3 && off(p / n, ratio).abs() < 1e-2, "{n} {}", p / n);
 }
 
 /// The same at a constant bulk modulus, at 64 x 64 cells: 0.884 N/m in the table.

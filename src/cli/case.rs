@@ -58,7 +58,7 @@ pub struct Done {
 pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<Done> {
     let (comm, scene) = (job.comm, job.scene);
     let (clock, started) = (Instant::now(), SystemTime::now());
-    let Problem { mut strategy, mut tangent, mut u, phases, settings, mesh } =
+    let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, mesh } =
         composition::build(comm, scene, job.file)?;
     let begun = job.origin.load(comm, job.out, &phases)?;
     if let Some(begun) = &begun {
@@ -86,7 +86,7 @@ pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<
     if let Some(begun) = &begun {
         driver = driver.at(begun.position, begun.counts);
     }
-    let mut result = driver.run(comm, settings, &mut tangent, &mut u);
+    let mut result = driver.run(&mut integrator, &mut tangent, &mut u);
     let counts = driver.counts();
     if result.is_ok() && job.keep_state {
         result = recording.keep_state(strategy.as_mut(), &u, counts);

@@ -21,10 +21,11 @@ impl Session {
     /// Starts MPI, then PETSc with the given PETSc options (as after `--` on the command line).
     ///
     /// # Errors
-    /// When MPI or PETSc cannot start, or an option holds a NUL.
+    /// When MPI or PETSc cannot start, or a word is neither an option nor its value.
     pub fn start(options: &[String]) -> Result<Self> {
         let (universe, _) = mpi::initialize_with_threading(mpi::Threading::Funneled)
             .ok_or_else(|| Error::Internal("MPI could not be started".into()))?;
+        refuse_stray(options)?;
         let mut arguments = vec![c"mpjr".to_owned()];
         for option in options {
             arguments.push(
@@ -72,6 +73,22 @@ impl Session {
             list
         }
     }
+}
+
+/// PETSc passes over words that are neither an option, a dash before a letter, nor the one value after it.
+fn refuse_stray(options: &[String]) -> Result<()> {
+    let mut may_be_value = false;
+    for word in options {
+        let is_option = word.trim_start_matches('-').starts_with(|first: char| first.is_ascii_alphabetic());
+        let is_option = is_option && word.starts_with('-');
+        if !is_option && !may_be_value {
+            return Err(Error::Usage(format!(
+                "{word:?} after -- is neither a PETSc option, such as -ksp_type, nor the value of one"
+            )));
+        }
+        may_be_value = is_option;
+    }
+    Ok(())
 }
 
 impl Drop for Session {

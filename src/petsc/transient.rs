@@ -36,18 +36,21 @@ pub struct Accepted {
 /// What follows an accepted step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Next {
-    /// A step of length `dt` from the time `now`: the exact value of the accepted step's end, which sums of dt miss by
-    /// round-off.
-    Step {
-        /// s
-        now: f64,
-        /// s
-        dt: f64,
-        /// How often it may be cut (by four each time) before the solve fails.
-        max_cuts: usize,
-    },
+    /// Another step.
+    Step(Attempt),
     /// The end.
     Stop,
+}
+
+/// A step to take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Attempt {
+    /// Its beginning, s: the exact value of the last step's end, which sums of dt miss by round-off.
+    pub now: f64,
+    /// Its length, s.
+    pub dt: f64,
+    /// How often it may be cut (by four each time) before the solve fails.
+    pub max_cuts: usize,
 }
 
 /// What the convergence test says of a Newton iterate.
@@ -109,8 +112,6 @@ pub struct Settings {
     pub linear: Linear,
     /// Newton iterations per attempt before the step is cut.
     pub max_newton: usize,
-    /// How often the first step may be cut (by four each time) before the solve fails; see [`Next::Step`].
-    pub max_cuts: usize,
 }
 
 /// A TS with its SNES, KSP and PC.
@@ -132,8 +133,12 @@ struct Context<'a, P> {
 }
 
 impl Integrator {
-    /// Backward Euler with Newton's method and a direct solver (MUMPS), changed by whatever PETSc options are set.
-    pub fn new(comm: &impl AsCommunicator, settings: Settings) -> Result<Self> {
+    /// Backward Euler with Newton's method and a direct solver (MUMPS), changed by whatever PETSc options are set, for a
+    /// problem whose tangent is `jacobian`.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] when PETSc does not take the value of an option.
+    pub fn new(comm: &impl AsCommunicator, settings: Settings, jacobian: &mut Matrix) -> Result<Self> {
         let mut ts = null_mut();
         let own = matches!(settings.linear, Linear::Own | Linear::OwnIterative);
         let (mut snes, mut search, mut ksp, mut pc) = (null_mut(), null_mut(), null_mut(), null_mut());
@@ -147,7 +152,6 @@ impl Integrator {
             check(ffi::TSSetMaxTime(ts, f64::MAX))?;
             check(ffi::TSSetMaxSteps(ts, i32::MAX - 1))?;
             check(ffi::TSSetMaxSNESFailures(ts, -1))?;
-            check(ffi::TSSetMaxStepRejections(ts, settings.max_cuts as i32))?;
             // A step that fails for good is a converged reason to be read, not an error of PETSc.
             check(ffi::TSSetErrorIfStepFails(ts, ffi::PetscBool_PETSC_FALSE))?;
             let mut adapt = null_mut();
@@ -173,13 +177,28 @@ impl Integrator {
             if matches!(settings.linear, Linear::Cholesky | Linear::Lu) {
                 check(ffi::PCFactorSetMatSolverType(pc, c"mumps".as_ptr()))?;
             }
-            check(ffi::TSSetFromOptions(ts))?;
+            check(ffi::TSSetFromOptions(ts)).map_err(refused)?;
+            if !own {
+                // Otherwise the first solve would find out that there is no such solver package.
+                check(ffi::KSPSetOperators(ksp, jacobian.raw(), jacobian.raw()))?;
+                check(ffi::PCFactorSetUpMatSolverType(pc)).map_err(refused)?;
+            }
             Ok(integrator)
         }
     }
 
-    /// Steps `problem` from `u` at the time `now`, first by `dt` (s), until it says stop. `jacobian` is the matrix its
-    /// tangent is written to, `u` holds the last accepted state afterwards.
+    /// Changes how many Newton iterations an attempt may take.
+    pub fn set_max_newton(&mut self, most: usize) -> Result<()> {
+        let mut snes = null_mut();
+        // SAFETY: a place for the handle, which stays TS's own; -2 leaves a tolerance as it is.
+        unsafe {
+            check(ffi::TSGetSNES(self.ts, &mut snes))?;
+            check(ffi::SNESSetTolerances(snes, -2.0, -2.0, -2.0, most as i32, -2))
+        }
+    }
+
+    /// Steps `problem` from `u`, by `first` and what the problem says is next, until it says stop. `jacobian` is the
+    /// matrix its tangent is written to, `u` holds the last accepted state afterwards.
     ///
     /// # Errors
     /// What the problem returned, or [`Error::Solver`] when a step failed after the allowed cuts.
@@ -188,8 +207,9 @@ impl Integrator {
         problem: &mut P,
         jacobian: &mut Matrix,
         u: &mut Vector,
-        (now, dt): (f64, f64),
+        first: Attempt,
     ) -> Result<()> {
+        let Attempt { now, dt, max_cuts } = first;
         let mut context =
             Context { problem, ts: self.ts, step: Step { t: now + dt, dt }, newton: 0, cuts: 0, error: None };
         let pointer = (&raw mut context).cast::<c_void>();
@@ -220,6 +240,7 @@ impl Integrator {
             }
             check(ffi::TSSetTime(ts, now))?;
             check(ffi::TSSetTimeStep(ts, dt))?;
+            check(ffi::TSSetMaxStepRejections(ts, max_cuts as i32))?;
             let code = ffi::TSSolve(ts, u.raw());
             ffi::TSGetConvergedReason(ts, &mut reason);
             code
@@ -237,6 +258,14 @@ impl Integrator {
             )));
         }
         Ok(())
+    }
+}
+
+/// An option's value that PETSc does not take is the user's error, and PETSc's words name the option.
+fn refused(error: Error) -> Error {
+    match error {
+        Error::Internal(words) => Error::Usage(format!("a PETSc option after -- was refused: {words}")),
+        other => other,
     }
 }
 
@@ -399,7 +428,7 @@ unsafe extern "C" fn post_step<P: Implicit>(ts: ffi::TS) -> ffi::PetscErrorCode 
                 cuts: (cuts - std::mem::replace(&mut context.cuts, cuts)) as usize,
             };
             match context.problem.accepted(accepted, &Vector::borrow(u))? {
-                Next::Step { now, dt, max_cuts } => {
+                Next::Step(Attempt { now, dt, max_cuts }) => {
                     check(ffi::TSSetTime(ts, now))?;
                     check(ffi::TSSetTimeStep(ts, dt))?;
                     check(ffi::TSSetMaxStepRejections(ts, max_cuts as i32))

@@ -2,29 +2,17 @@
 
 use std::time::{Duration, Instant};
 
-use mpi::topology::SimpleCommunicator;
-
 use super::{Observer, Report, TransientProblem};
 use crate::error::{Error, Result};
 use crate::loading::Phase;
-use crate::petsc::{Accepted, Implicit, Integrator, Matrix, Next, Settings, Step, Vector, Verdict};
+use crate::petsc::{Accepted, Attempt, Implicit, Integrator, Matrix, Next, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 
-/// What the driver may do to get through a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
-    /// Newton iterations per attempt.
-    pub max_newton: usize,
-    /// How often in succession a step may be cut by four.
-    pub max_cuts: usize,
-}
+/// Newton iterations per attempt: from stick to slip under a sharp regularisation a step takes up to fifty.
+pub const MAX_NEWTON: usize = 60;
 
-impl Default for Limits {
-    fn default() -> Self {
-        // From stick to slip under a sharp regularisation a step takes up to a hundred.
-        Self { max_newton: 60, max_cuts: 8 }
-    }
-}
+/// How often in succession a step may be cut by four.
+const MAX_CUTS: usize = 8;
 
 /// How often a planned step may be cut, all its pieces together: pieces grow back by two, so that one which needs a 32nd
 /// of the planned step throughout is cut about twenty times.
@@ -41,7 +29,6 @@ pub struct Driver<'a> {
     now: f64,
     /// The length of the next step, s; none = as planned.
     dt: Option<f64>,
-    max_cuts: usize,
     /// Cuts of the planned step so far.
     cuts: usize,
     counts: Counts,
@@ -95,18 +82,7 @@ pub struct Counts {
 impl<'a> Driver<'a> {
     /// A driver at the beginning of the history.
     pub fn new(problem: &'a mut dyn TransientProblem, observer: &'a mut dyn Observer, phases: &'a [Phase]) -> Self {
-        Self {
-            problem,
-            observer,
-            phases,
-            phase: 0,
-            target: 0,
-            now: 0.0,
-            dt: None,
-            max_cuts: 0,
-            cuts: 0,
-            counts: Counts::default(),
-        }
+        Self { problem, observer, phases, phase: 0, target: 0, now: 0.0, dt: None, cuts: 0, counts: Counts::default() }
     }
 
     /// The same driver at a later position, where `counts` were counted before. The problem must have been restored
@@ -120,21 +96,13 @@ impl<'a> Driver<'a> {
     ///
     /// # Errors
     /// [`Error::Solver`] when a step fails after all cuts; what was accepted before has been observed.
-    pub fn run(
-        &mut self,
-        comm: &SimpleCommunicator,
-        settings: Settings,
-        tangent: &mut Matrix,
-        u: &mut Vector,
-    ) -> Result<()> {
+    pub fn run(&mut self, integrator: &mut Integrator, tangent: &mut Matrix, u: &mut Vector) -> Result<()> {
         let Some(phase) = self.phases.get(self.phase) else { return Ok(()) };
         let Some(target) = phase.steps.get(self.target) else { return Ok(()) };
-        let start = (self.now, self.dt.unwrap_or(target.dt));
+        let first = self.attempt(self.dt.unwrap_or(target.dt));
         self.problem.begin(phase.clone());
-        self.max_cuts = settings.max_cuts;
-        let settings = Settings { max_cuts: self.cuts_left(), ..settings };
         let begun = Instant::now();
-        let outcome = Integrator::new(comm, settings)?.solve(self, tangent, u, start);
+        let outcome = integrator.solve(self, tangent, u, first);
         self.counts.total = begun.elapsed();
         outcome.map_err(|error| match error {
             Error::Solver(text) => Error::Solver(format!("phase {:?}: {text}", self.phases[self.phase].name)),
@@ -147,12 +115,9 @@ impl<'a> Driver<'a> {
         self.counts
     }
 
-    /// How often the next step may be cut.
-    fn cuts_left(&self) -> usize {
-        match self.cuts {
-            0 => self.max_cuts,
-            cuts => self.max_cuts.min(MOST_CUTS.saturating_sub(cuts)),
-        }
+    /// The next step, of length `dt`, and how often it may be cut.
+    fn attempt(&self, dt: f64) -> Attempt {
+        Attempt { now: self.now, dt, max_cuts: MAX_CUTS.min(MOST_CUTS - self.cuts.min(MOST_CUTS)) }
     }
 
     /// The step after one that ended at `now` and was `dt` long.
@@ -161,7 +126,7 @@ impl<'a> Driver<'a> {
         let remaining = target.time - self.now;
         if remaining > 1e-9 * target.dt {
             // Inside a planned step that was cut: grow back by two.
-            return Next::Step { now: self.now, dt: remaining.min(2.0 * dt), max_cuts: self.cuts_left() };
+            return Next::Step(self.attempt(remaining.min(2.0 * dt)));
         }
         self.cuts = 0;
         self.now = target.time;
@@ -174,7 +139,7 @@ impl<'a> Driver<'a> {
                 None => return Next::Stop,
             }
         }
-        Next::Step { now: self.now, dt: self.phases[self.phase].steps[self.target].dt, max_cuts: self.cuts_left() }
+        Next::Step(self.attempt(self.phases[self.phase].steps[self.target].dt))
     }
 }
 
@@ -229,7 +194,7 @@ impl Implicit for Driver<'_> {
             newton: accepted.newton,
             counts: self.counts,
             next: match next {
-                Next::Step { now, dt, .. } => {
+                Next::Step(Attempt { now, dt, .. }) => {
                     Some(Position { phase: self.phase, target: self.target, now, dt, cuts: self.cuts })
                 }
                 Next::Stop => None,

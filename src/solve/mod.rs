@@ -16,7 +16,7 @@ pub use body::{Body, Moduli, Region, Solid};
 pub use condensed::{
     Backing, Compliance, Condensed, Following, Interior, LARGE_FACE, PeriodicColumn, Relaxation, Remembering, Source,
 };
-pub use driver::{Counts, Driver, Limits, Position};
+pub use driver::{Counts, Driver, MAX_NEWTON, Position};
 pub use monolithic::Monolithic;
 
 /// A discretised contact problem in a form that TS and SNES can step.
