@@ -196,6 +196,7 @@ fn help_and_version() {
             let help = mpjr(ranks, &arguments);
             assert_eq!((help.code, help.stderr.as_str()), (0, ""), "{help:?}");
             assert_eq!(help.stdout.matches("Usage:").count(), 1, "{help:?}");
+            assert!(!help.stdout.contains('\u{1b}'), "{help:?}");
         }
     }
 }

@@ -25,7 +25,8 @@ use crate::error::{Error, Result};
 ///
 /// Every command also works under `mpirun -n N`.
 #[derive(Parser)]
-#[command(name = "mpjr", version)]
+// mpirun gives its processes a terminal whatever its own output goes to, so that colours would end up in files.
+#[command(name = "mpjr", version, color = clap::ColorChoice::Never)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -111,8 +111,9 @@ fn extent(scene: &Scene, outline: &Outline) -> String {
     };
     let Stretch { from, to, edges, .. } = outline.face;
     format!(
-        "{quadrilaterals} quadrilaterals, {triangles} triangles{lock}, contact face of {edges} edges from x = {from:.6} \
-         to {to:.6} m"
+        "{quadrilaterals} quadrilaterals, {triangles} triangles{lock}; contact face of\n{:15}{edges} edges from x = \
+         {from:.6} to {to:.6} m",
+        ""
     )
 }
 

@@ -298,8 +298,9 @@ pub struct Solid {
     label: String,
     shear_modulus: f64,
     prony: Prony,
-    /// The instantaneous Poisson ratio where the bulk modulus stays.
-    constant_bulk: Option<f64>,
+    poisson: Poisson,
+    /// Whether the Poisson ratio changes with time.
+    poisson_varies: bool,
 }
 
 impl Solid {
@@ -313,25 +314,19 @@ impl Solid {
             ("", count) => format!("{count} arms"),
             (label, _) => label.to_owned(),
         };
-        let stays = material.poisson_rule == Some(PoissonRule::ConstantBulkModulus);
+        let stays = material.is_elastic() || material.poisson_rule == Some(PoissonRule::ConstantRatio);
         Self {
             label,
             shear_modulus: material.shear_modulus,
             prony: Prony { arms },
-            constant_bulk: stays.then_some(material.poisson_ratio),
+            poisson: material.poisson(),
+            poisson_varies: !stays,
         }
     }
 
     /// Its entry in the legend.
     pub fn label(&self) -> &str {
         &self.label
-    }
-
-    /// (3 K - 2 G(t))/(6 K + 2 G(t)): the Poisson ratio of the moduli at time t.
-    fn poisson_ratio(&self, instantaneous: f64, t: f64) -> f64 {
-        let bulk = 2.0 * (1.0 + instantaneous) / (3.0 * (1.0 - 2.0 * instantaneous));
-        let shear = self.prony.relaxation(t);
-        (3.0 * bulk - 2.0 * shear) / (6.0 * bulk + 2.0 * shear)
     }
 }
 
@@ -352,31 +347,12 @@ pub fn sheet(solids: &[Solid], law: Option<Fractional>) -> Sheet {
     let reference = law.map_or(Reference::None, Reference::Law);
     let figures = MaterialFigures { symbol: "G", series: series.collect(), reference, band };
     let mut figures: Vec<Figure> = figures.all().into_iter().map(|(_, figure)| figure).collect();
-    // The band is that of the relaxation times; nothing was measured.
-    figures.iter_mut().for_each(|figure| figure.shaded = None);
-    if solids.iter().any(|solid| solid.constant_bulk.is_some()) {
-        figures.push(poisson(solids, band));
+    if solids.iter().any(|solid| solid.poisson_varies) {
+        let all: Vec<_> = solids.iter().map(|solid| (solid.label.as_str(), &solid.poisson)).collect();
+        figures.push(poisson_figure(&all, band));
     }
+    // The band is that of the relaxation times; nothing was measured and no history is known.
+    figures.iter_mut().for_each(|figure| figure.shaded = None);
     let columns = if figures.len() > 1 { 2 } else { 1 };
     Sheet::of_curves(figures, columns, (760, 520))
-}
-
-fn poisson(solids: &[Solid], band: Band) -> Figure {
-    let curve = |(i, solid): (usize, &Solid)| {
-        let instantaneous = solid.constant_bulk?;
-        let times = Band { from: band.from / 100.0, to: band.to * 100.0 }.samples(400);
-        Some(Curve {
-            label: solid.label.clone(),
-            points: times.iter().map(|&t| (t, solid.poisson_ratio(instantaneous, t))).collect(),
-            colour: PALETTE[i % PALETTE.len()],
-            stroke: Stroke::Solid,
-        })
-    };
-    Figure {
-        title: "Poisson ratio at a constant bulk modulus".into(),
-        x: Axis::log("time t, s"),
-        y: Axis::linear("ν(t) = (3 K − 2 G)/(6 K + 2 G)"),
-        curves: solids.iter().enumerate().filter_map(curve).collect(),
-        shaded: None,
-    }
 }

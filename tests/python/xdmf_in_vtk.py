@@ -1,4 +1,4 @@
-"""Opens an XDMF file as ParaView does (vtkXdmfReader) and compares every frame with h5py: python3 tests/xdmf_in_vtk.py FILE.xdmf"""
+"""Opens an XDMF file as ParaView does (vtkXdmfReader) and compares every frame with h5py: python3 tests/python/xdmf_in_vtk.py FILE.xdmf"""
 
 import sys
 
