@@ -87,6 +87,12 @@ fn condensed_is_the_same_discrete_solution() {
             cases.push(vec![change.to_owned(), format!("material.poisson_rule={rule}"), "layer.sides=free".into()]);
         }
     }
+    for rule in ["constant_ratio", "constant_bulk_modulus"] {
+        let rule = format!("material.poisson_rule={rule}");
+        let friction = "friction={ law = \"coulomb_elastic_slip\", coefficient = 0.3, elastic_slip = 1e-6 }".to_owned();
+        cases.push(vec![friction.clone(), rule.clone()]);
+        cases.push(vec![friction, rule, "contact.method=augmented".into(), "contact.penalty=1e4".into()]);
+    }
     for case in cases {
         // A table cannot be taken out by --set; a coefficient of zero is the frictionless law.
         let case: Vec<String> =

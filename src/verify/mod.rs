@@ -143,7 +143,7 @@ impl fmt::Display for Tally {
 pub fn cases(quick: bool) -> Result<Vec<Case>> {
     let mut list = kernel::cases(quick);
     list.extend(half_space::cases(quick));
-    list.extend(tangential::cases());
+    list.extend(tangential::cases(quick));
     list.extend(relaxation::cases(quick));
     list.extend(steady::cases(quick));
     list.extend(sliding::cases(quick));
