@@ -59,11 +59,18 @@ pub fn build_with_profile(comm: &SimpleCommunicator, scene: &Scene, profile: Box
     assemble(comm, scene, body::mesh(comm, scene, Path::new(""))?, profile)
 }
 
+/// As [`build`], with the bytes of the .msh file that the scene names, on every rank, instead of the file.
+pub fn build_on_mesh(comm: &SimpleCommunicator, scene: &Scene, bytes: &[u8]) -> Result<Problem> {
+    let mesh = body::mesh_of(bytes, scene)?;
+    let profile = shape(scene, Path::new(""), &[], Stretch::of(scene, &mesh.face))?.profile;
+    assemble(comm, scene, mesh, profile)
+}
+
 fn assemble(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, profile: Box<dyn Profile>) -> Result<Problem> {
     let materials = Materials::new(scene);
     let laws = Laws {
         profile,
-        penalty: scene.contact.penalty,
+        penalty: body::penalty(scene, &mesh),
         augmentation: match scene.contact.method {
             scene::Method::Penalty => None,
             scene::Method::Augmented { augmentation_tolerance } => Some(augmentation_tolerance),
@@ -72,11 +79,15 @@ fn assemble(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, profile: Box<d
     };
     let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
     let solid = Solid { mesh, quadrilateral: body::quadrilateral(scene), regions: materials.regions.clone() };
-    match form(scene) {
-        Form::Monolithic => monolithic(comm, scene, (solid, materials), interface),
-        Form::Following => following(comm, scene, (solid, materials), interface),
-        Form::Remembering => remembering(comm, scene, (solid, materials), interface),
+    let mut problem = match form(scene) {
+        Form::Monolithic => monolithic(comm, scene, (solid, materials), interface)?,
+        Form::Following => following(comm, scene, (solid, materials), interface)?,
+        Form::Remembering => remembering(comm, scene, (solid, materials), interface)?,
+    };
+    if scene.output.energy {
+        problem.strategy.keep_account(&problem.u)?;
     }
+    Ok(problem)
 }
 
 /// How a scene is solved.
@@ -138,7 +149,7 @@ fn following(
         None => None,
     };
     let interior = Interior::new(comm, solid);
-    let backing = Following { compliance, softness, relaxation, interior, secant: 1.0 };
+    let backing = Following { compliance, softness, relaxation, interior, secant: 1.0, account: None };
     condensed(comm, scene, mesh, u, (interface, backing))
 }
 

@@ -4,6 +4,7 @@
 //! numbers, so every rank sees the same error and the same totals; each rank assembles only the rows that it owns.
 
 mod augmentation;
+mod exchange;
 mod oscillation;
 mod sites;
 
@@ -19,6 +20,8 @@ use crate::snapshot::Snapshot;
 
 use augmentation::{Augmentation, Multipliers};
 use sites::{Point, Sites};
+
+pub use exchange::Exchange;
 
 /// Displacements and rates of the face's nodes, in the order of the face: x, z of each.
 #[derive(Debug, Clone, PartialEq)]
@@ -194,11 +197,10 @@ impl Interface {
         let mut totals = Totals::default();
         let (mut length, mut contact, mut stick) = (0.0, 0.0, 0.0);
         for Answer { point, elevation, motion, traction } in self.answers(&self.acting, placement, surface) {
-            let force = point.frame.tr_mul(&traction.residual());
-            let dx = point.weight * point.frame[(0, 0)];
-            totals.normal_force += point.weight * force.y;
-            totals.tangential_force += dx * traction.shear.shear;
-            totals.hysteretic_force += dx * traction.pressure * elevation.slope;
+            let [normal, tangential, hysteretic] = point.forces(&traction, elevation.slope);
+            totals.normal_force += normal;
+            totals.tangential_force += tangential;
+            totals.hysteretic_force += hysteretic;
             totals.max_penetration = totals.max_penetration.max(motion.penetration());
             length += point.weight;
             if traction.pressure > 0.0 {

@@ -25,8 +25,16 @@ pub struct Solution {
 
 /// Solves a scene on all ranks of `comm`.
 pub fn solve(comm: &SimpleCommunicator, scene: &Scene) -> Result<Solution> {
-    let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, mesh } =
-        composition::build(comm, scene, Path::new(""))?;
+    solve_problem(composition::build(comm, scene, Path::new(""))?)
+}
+
+/// Solves a scene on all ranks of `comm`, with the bytes of the .msh file that it names instead of the file.
+pub fn solve_on_mesh(comm: &SimpleCommunicator, scene: &Scene, mesh: &[u8]) -> Result<Solution> {
+    solve_problem(composition::build_on_mesh(comm, scene, mesh)?)
+}
+
+fn solve_problem(problem: Problem) -> Result<Solution> {
+    let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, mesh } = problem;
     let mut collected = Collected { history: vec![HistoryRow::default()], ends: Vec::new() };
     let mut driver = Driver::new(strategy.as_mut(), &mut collected, &phases);
     driver.run(&mut integrator, &mut tangent, &mut u)?;
@@ -48,6 +56,7 @@ impl Solution {
 
 /// The row of the history that says where a run is.
 pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
+    let energy = report.problem.energy().unwrap_or_default();
     let mut contact = report.problem.contact()?;
     let totals = contact.totals()?;
     Ok(HistoryRow {
@@ -64,7 +73,7 @@ pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
         stuck_slip: totals.stuck_slip,
         traction_oscillation: totals.traction_oscillation,
         newton_iterations: report.newton,
-        ..HistoryRow::default()
+        energy,
     })
 }
 

@@ -139,7 +139,7 @@ fn plan(scene: &Scene, mesh: &Mesh, phases: &[Phase]) -> Plan {
         // A step that is cut adds rows.
         history_rows: 1 + steps + steps / 8,
         phase_names: phases.iter().map(|phase| phase.name.clone()).collect(),
-        energy: false,
+        energy: scene.output.energy,
         interface_rows: steps.checked_div(scene.output.interface_every).map_or(ends, |rows| rows + ends),
         interface_x: mesh.face.x.clone(),
         bulk: bulk_plan(scene, mesh, phases),

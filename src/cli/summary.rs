@@ -5,9 +5,10 @@ use std::time::Duration;
 
 use super::material;
 use crate::composition::{self, Form, Outline, Stretch};
+use crate::energy::Energy;
 use crate::output::{HistoryRow, Status};
 use crate::petsc;
-use crate::scene::{Friction, Method, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
+use crate::scene::{Friction, Method, Penalty, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
 use crate::solve::Counts;
 
 /// What is modelled and what is not: (modelled, not modelled).
@@ -38,10 +39,6 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
         }
         None => no.push("friction (symmetric solver)".to_owned()),
     }
-    let softer = scene.layer().map_or_else(String::new, |layer| {
-        let added = added_compliance(scene.contact.penalty, layer, &scene.materials);
-        format!(" ({added:.2e} of the compliance to the wave the layer is stiffest to)")
-    });
     let method = match scene.contact.method {
         Method::Penalty => String::new(),
         Method::Augmented { augmentation_tolerance } => {
@@ -49,13 +46,15 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
         }
     };
     yes.push(format!(
-        "contact: {method}penalty of {:.3e} Pa/m{softer}, {} quadrature",
-        scene.contact.penalty,
+        "contact: {method}penalty of {}, {} quadrature",
+        penalty(scene),
         match scene.contact.quadrature {
             Quadrature::Nodal => "nodal",
             Quadrature::Gauss => "two-point Gauss",
         }
     ));
+    let balance = if scene.output.energy { &mut yes } else { &mut no };
+    balance.push("energy balance".to_owned());
     if scene.output.bulk_at.is_empty() {
         no.push("stress recovery and bulk output".to_owned());
     } else {
@@ -63,6 +62,18 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
     }
     no.push("inertia, large strains, thermal effects".to_owned());
     (yes, no)
+}
+
+/// The penalty, and how much it softens a layer.
+fn penalty(scene: &Scene) -> String {
+    match (scene.contact.penalty, scene.layer()) {
+        (Penalty::Stiffness(stiffness), Some(layer)) => {
+            let added = added_compliance(stiffness, layer, &scene.materials);
+            format!("{stiffness:.3e} Pa/m ({added:.2e} of the compliance to the wave the layer is stiffest to)")
+        }
+        (Penalty::Stiffness(stiffness), None) => format!("{stiffness:.3e} Pa/m"),
+        (Penalty::Tolerance(tolerance), _) => format!("that softens the body by {tolerance} at most"),
+    }
 }
 
 /// What `mpjr check` prints after the resolved scene.
@@ -75,6 +86,9 @@ pub fn plan(scene: &Scene, outline: &Outline) -> String {
     let _ = writeln!(text, "not modelled:  {}", no.join("\n               "));
     text += &material::lines(scene);
     let _ = writeln!(text, "mesh:          {}, {} unknowns", extent(scene, outline), outline.unknowns);
+    if let Some(penalty) = outline.penalty {
+        let _ = writeln!(text, "penalty:       {penalty:.3e} Pa/m");
+    }
     let _ = writeln!(
         text,
         "loading:       {} phase(s), {} steps, {:.6} s",
@@ -161,6 +175,9 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
         "{:<15}{:.4} of the face, {:.4} of it sticking; penetration {:.1e} m, slip while sticking {:.1e} m",
         "final contact:", last.contact_fraction, last.stick_fraction, last.max_penetration, last.stuck_slip
     );
+    if scene.output.energy {
+        let _ = writeln!(text, "{:<15}{}", "energy:", balance(&last.energy));
+    }
     let augmented = match counts.augmentations {
         0 => String::new(),
         again => format!(", {again} augmentations"),
@@ -181,6 +198,16 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     let _ = writeln!(text, "{:<15}at most {:.2} GB a rank", "memory:", petsc::peak_memory() as f64 / 1e9);
     let _ = writeln!(text, "{:<15}{blas}", "BLAS:");
     text
+}
+
+/// The energy balance as a sum.
+fn balance(energy: &Energy) -> String {
+    let Energy { external_work, stored, viscoelastic_dissipation, friction_dissipation, penalty, imbalance } = energy;
+    format!(
+        "work {external_work:.3e} = stored {stored:.3e} + arms {viscoelastic_dissipation:.3e} + friction \
+         {friction_dissipation:.3e}\n{:15}+ penalty {penalty:.3e} + imbalance {imbalance:.3e} J/m",
+        ""
+    )
 }
 
 /// How the scene is solved, and why.

@@ -59,6 +59,15 @@ impl Friction {
         }
     }
 
+    /// The part of a step's slip, m, that is stored and not dissipated, of a point whose slip while sticking came to
+    /// `stuck`.
+    pub fn stored(&self, slip: Slip, stuck: f64) -> f64 {
+        match self {
+            Self::CoulombTanh(_) => 0.0,
+            Self::ElasticSlip(_) => stuck - slip.stuck,
+        }
+    }
+
     /// The slip rate, m/s, at which a point of the contact may be expected to go on from an accepted state when the
     /// indenter's is `drive`; none where friction does not answer to it.
     pub fn expected(&self, slip: Slip, drive: f64) -> Option<f64> {

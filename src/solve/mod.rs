@@ -6,6 +6,7 @@ mod driver;
 mod face;
 mod monolithic;
 
+use crate::energy::Energy;
 use crate::error::{Error, Result};
 use crate::interface::{Fields, Interface, Surface, Totals};
 use crate::loading::{Phase, Placement};
@@ -52,6 +53,10 @@ pub trait TransientProblem {
     fn augment(&mut self, step: Step, u: &Vector) -> Result<bool>;
     /// Takes the accepted state to the end of an accepted step.
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()>;
+    /// Keeps account of the energy from here on, at rest; `layout` is that of the solution.
+    fn keep_account(&mut self, layout: &Vector) -> Result<()>;
+    /// The energy balance at the accepted state, where it is kept account of.
+    fn energy(&self) -> Option<Energy>;
     /// Adds the accepted state, with the solution `u`, to a snapshot: all that later steps depend on, down to the last
     /// bit.
     fn save(&mut self, u: &Vector, snapshot: &mut Snapshot) -> Result<()>;

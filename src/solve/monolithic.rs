@@ -6,6 +6,7 @@ use super::body::Body;
 use super::face::ContactFace;
 use super::{BulkFields, Contact, TransientProblem};
 use crate::bulk::Bulk;
+use crate::energy::Energy;
 use crate::error::Result;
 use crate::interface::Interface;
 use crate::loading::Phase;
@@ -134,6 +135,16 @@ impl TransientProblem for Monolithic {
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {
         self.bulk.commit(step, u)?;
         self.face.commit(step, u)
+    }
+
+    fn keep_account(&mut self, _layout: &Vector) -> Result<()> {
+        self.bulk.keep_account();
+        self.face.keep_account();
+        Ok(())
+    }
+
+    fn energy(&self) -> Option<Energy> {
+        self.face.energy().zip(self.bulk.energy()).map(|(face, body)| Energy::new(face, body))
     }
 
     fn save(&mut self, u: &Vector, snapshot: &mut Snapshot) -> Result<()> {

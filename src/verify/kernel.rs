@@ -63,7 +63,7 @@ fn compliance(depth: f64, poisson: f64) -> Case {
     Case {
         name: format!("bonded layer, H = {depth} m, nu = {poisson}"),
         source: "plane strain layer on a rigid base, in closed form",
-        settings: vec![fine, coarse],
+        subjects: vec![fine.into(), coarse.into()],
         compare: Box::new(compare),
     }
 }
@@ -127,5 +127,10 @@ fn mirror(n: usize) -> Case {
             Row::relative("hysteretic force, likewise, N/m", [r.hysteretic_force, -l.hysteretic_force], 1e-5, SMOOTH),
         ])
     };
-    Case { name: "mirror images".into(), source: "symmetry", settings: vec![right, left], compare: Box::new(compare) }
+    Case {
+        name: "mirror images".into(),
+        source: "symmetry",
+        subjects: vec![right.into(), left.into()],
+        compare: Box::new(compare),
+    }
 }

@@ -52,7 +52,7 @@ fn augmented(n: usize) -> Case {
 /// The oracle takes the same steps with the same memory and penalty on as many nodes, its surface kernel exact in
 /// Fourier space, so that the mesh is what differs.
 fn compared(name: String, setting: Setting, finer: usize) -> Case {
-    let settings = vec![setting.clone()];
+    let subjects = vec![setting.clone().into()];
     let compare = move |solutions: &[Solution]| {
         let exact = setting.transient(setting.cells[0].min(256))?;
         let [pressed, slid] = [&exact[0], &exact[1]];
@@ -74,5 +74,5 @@ fn compared(name: String, setting: Setting, finer: usize) -> Case {
         }
         Ok(rows)
     };
-    Case { name, source: "the same steps in Fourier space, same nodes", settings, compare: Box::new(compare) }
+    Case { name, source: "the same steps in Fourier space, same nodes", subjects, compare: Box::new(compare) }
 }

@@ -43,7 +43,7 @@ fn slid(n: usize, velocity: f64, rule: PoissonRule, approach: f64) -> Setting {
 /// steps are halved together, and both errors are of second order.
 fn full_contact(n: usize, rule: PoissonRule) -> Case {
     let (velocity, approach) = (0.1, 8e-3);
-    let settings = vec![slid(n, velocity, rule, approach), slid(n / 2, velocity, rule, approach)];
+    let settings = [slid(n, velocity, rule, approach), slid(n / 2, velocity, rule, approach)];
     let setting = settings[0].clone();
     let compare = move |solutions: &[Solution]| {
         let exact = setting.steady(velocity).full_contact(setting.wave(), Load::Approach(approach))?;
@@ -60,7 +60,7 @@ fn full_contact(n: usize, rule: PoissonRule) -> Case {
     Case {
         name: format!("hysteresis in full contact, v = {velocity} m/s, {}", said(rule)),
         source: "full contact of a wave, in closed form",
-        settings,
+        subjects: settings.map(Into::into).into(),
         compare: Box::new(compare),
     }
 }
@@ -68,7 +68,7 @@ fn full_contact(n: usize, rule: PoissonRule) -> Case {
 /// Partial contact against the complementarity problem in Fourier space on 512 nodes.
 fn partial_contact(n: usize, velocity: f64, rule: PoissonRule) -> Case {
     let setting = slid(n, velocity, rule, APPROACH);
-    let settings = vec![setting.clone()];
+    let subjects = vec![setting.clone().into()];
     let compare = move |solutions: &[Solution]| {
         let wave = setting.wave();
         let exact = setting.steady(velocity).solve(512, |x| wave.at(x), Load::Approach(APPROACH))?;
@@ -94,7 +94,7 @@ fn partial_contact(n: usize, velocity: f64, rule: PoissonRule) -> Case {
     Case {
         name: format!("steady sliding, v = {velocity} m/s, {}, {n} x {n}", said(rule)),
         source: "complementarity in Fourier space, 512 nodes",
-        settings,
+        subjects,
         compare: Box::new(compare),
     }
 }

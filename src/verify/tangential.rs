@@ -44,7 +44,7 @@ fn mindlin(n: usize) -> Case {
     // One step: without memory and turns, where the sway comes from does not matter.
     let phases = vec![Phase::press(1.0, 20, approach), sway(distance, 1, approach)];
     let setting = nearly_incompressible(n, Indenter::Parabola(1.0), elastic_slip, phases);
-    let settings = vec![setting.clone()];
+    let subjects = vec![setting.clone().into()];
     let compare = move |solutions: &[Solution]| {
         let (solution, end) = (&solutions[0], &solutions[0].ends[1]);
         let row = solution.last();
@@ -87,7 +87,7 @@ fn mindlin(n: usize) -> Case {
     Case {
         name: format!("Cattaneo-Mindlin, nu = {POISSON}, {n} cells"),
         source: "Johnson, Contact Mechanics, 7.2(d)",
-        settings,
+        subjects,
         compare: Box::new(compare),
     }
 }
@@ -111,7 +111,7 @@ fn cycle(n: usize) -> Case {
     for (distance, steps) in [(half, 10), (-2.0 * half, 20), (2.0 * half, 20)] {
         setting.phases.push(sway(distance, steps, approach));
     }
-    let settings = vec![setting];
+    let subjects = vec![setting.into()];
     let compare = move |solutions: &[Solution]| {
         let mut contact = Oscillation::new(force, approach, FRICTION);
         let mut worst = [0.0_f64; 2];
@@ -141,7 +141,7 @@ fn cycle(n: usize) -> Case {
     Case {
         name: format!("Jager-Ciavarella cycle, nu = {POISSON}, {n} cells"),
         source: "Jager 1993, Ciavarella 1998",
-        settings,
+        subjects,
         compare: Box::new(compare),
     }
 }

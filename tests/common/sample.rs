@@ -2,7 +2,8 @@
 
 use std::time::SystemTime;
 
-use mpjr::output::{BulkPlan, Energy, HistoryRow, InterfaceFrame, Metadata, Plan};
+use mpjr::energy::Energy;
+use mpjr::output::{BulkPlan, HistoryRow, InterfaceFrame, Metadata, Plan};
 
 /// Nodes of the contact face.
 pub const FACE: usize = 5;

@@ -1,5 +1,6 @@
 //! Figures of one run, from its result file; one module each.
 
+mod energy;
 mod history;
 mod material;
 mod profile;
@@ -73,8 +74,17 @@ pub struct Kind {
 }
 
 /// All figures of a result file.
-pub const FIGURES: [Kind; 6] = [
+pub const FIGURES: [Kind; 7] = [
     Kind { name: "history", shows: "forces against time", lacks: |_| None, sheet: history::sheet },
+    Kind {
+        name: "energy",
+        shows: "where the work of the indenter goes, against time",
+        lacks: |run| {
+            let kept = run.results.has("history/energy/stored");
+            (!kept).then_some("no energies (the scene's output.energy switches them off)")
+        },
+        sheet: energy::sheet,
+    },
     Kind {
         name: "tractions",
         shows: "tractions along the face (Figure 6)",

@@ -19,6 +19,7 @@ mod remembering;
 
 use super::face::ContactFace;
 use super::{BulkFields, Contact, TransientProblem};
+use crate::energy::{BodyEnergy, Energy};
 use crate::error::Result;
 use crate::interface::{Interface, Residual};
 use crate::loading::Phase;
@@ -44,9 +45,13 @@ pub trait Backing {
     fn compliance(&self) -> Option<&Compliance>;
     /// The largest entry of C, m per N/m, on all ranks.
     fn softness(&self) -> f64;
-    /// Whether [`Self::commit`] needs the contact forces, and [`Self::free`] no rate.
+    /// Whether the memory needs the contact forces, and [`Self::free`] no rate.
     fn takes_forces(&self) -> bool;
-    /// Takes the memory to the end of an accepted step that ends at `u` under the contact forces -`residual`.
+    /// Keeps account of the energy from here on, at rest; `layout` is that of the face.
+    fn keep_account(&mut self, layout: &Vector) -> Result<()>;
+    /// The energy at the accepted state, where it is kept account of.
+    fn energy(&self) -> Option<BodyEnergy>;
+    /// Takes memory and account to the end of an accepted step that ends at `u` under the contact forces -`residual`.
     fn commit(&mut self, step: Step, u: &Vector, residual: &Residual) -> Result<()>;
     /// Adds the memory to a snapshot; `order` is that of the face.
     fn save(&mut self, order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()>;
@@ -216,11 +221,22 @@ impl<B: Backing> TransientProblem for Condensed<B> {
 
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {
         self.face.commit(step, u)?;
-        if self.backing.takes_forces() {
+        if self.backing.takes_forces() || self.face.energy().is_some() {
             self.face.accepted_residual()?;
+        }
+        if self.backing.takes_forces() {
             self.refine_forces(step, u)?;
         }
         self.backing.commit(step, u, &self.face.residual)
+    }
+
+    fn keep_account(&mut self, layout: &Vector) -> Result<()> {
+        self.face.keep_account();
+        self.backing.keep_account(layout)
+    }
+
+    fn energy(&self) -> Option<Energy> {
+        self.face.energy().zip(self.backing.energy()).map(|(face, body)| Energy::new(face, body))
     }
 
     fn save(&mut self, u: &Vector, snapshot: &mut Snapshot) -> Result<()> {

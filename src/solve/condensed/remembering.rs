@@ -21,6 +21,7 @@ use super::compliance::Compliance;
 use crate::bulk::Bulk;
 use crate::element::plane::Split;
 use crate::element::quad4::Stiffness;
+use crate::energy::BodyEnergy;
 use crate::error::Result;
 use crate::interface::Residual;
 use crate::mesh::Cell;
@@ -76,6 +77,8 @@ pub struct Remembering {
     softness: f64,
     /// Length and beginning of the step that was prepared, s.
     prepared: Option<f64>,
+    /// On all ranks; only where it is asked for.
+    energy: Option<BodyEnergy>,
 }
 
 /// The whole body, on the one rank that solves it.
@@ -110,7 +113,13 @@ impl Remembering {
     /// At rest; `whole` is the body with its bulk, on rank 0 of `comm` (both made for that rank alone).
     pub fn new(comm: &SimpleCommunicator, whole: Option<(Bulk, Body)>, source: Source) -> Result<Self> {
         let interior = whole.map(|(bulk, body)| Interior::new(bulk, body, source)).transpose();
-        Ok(Self { comm: comm.duplicate(), interior: agree(comm, interior)?, softness: 0.0, prepared: None })
+        Ok(Self {
+            comm: comm.duplicate(),
+            interior: agree(comm, interior)?,
+            softness: 0.0,
+            prepared: None,
+            energy: None,
+        })
     }
 }
 
@@ -154,10 +163,24 @@ impl Backing for Remembering {
         true
     }
 
+    fn keep_account(&mut self, _layout: &Vector) -> Result<()> {
+        if let Some(interior) = &mut self.interior {
+            interior.bulk.keep_account();
+        }
+        self.energy = Some(BodyEnergy::default());
+        Ok(())
+    }
+
+    fn energy(&self) -> Option<BodyEnergy> {
+        self.energy
+    }
+
     fn commit(&mut self, step: Step, _u: &Vector, residual: &Residual) -> Result<()> {
         let mine = self.interior.as_mut().map_or(Ok(()), |interior| interior.commit(step, residual));
         self.prepared = None;
-        agree(&self.comm, mine)
+        agree(&self.comm, mine)?;
+        self.share_energy();
+        Ok(())
     }
 
     fn save(&mut self, _order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()> {
@@ -168,12 +191,26 @@ impl Backing for Remembering {
     fn restore(&mut self, _order: &NaturalOrder, snapshot: &Snapshot, _u: &Vector) -> Result<()> {
         self.prepared = None;
         let mine = self.interior.as_mut().map_or(Ok(()), |interior| interior.restore(snapshot));
-        agree(&self.comm, mine)
+        agree(&self.comm, mine)?;
+        self.share_energy();
+        Ok(())
     }
 
     fn bulk_fields(&mut self, _face: &mut ContactFace, _u: &Vector) -> Result<BulkFields> {
         let mine = self.interior.as_mut().map_or(Ok(BulkFields::default()), Interior::fields);
         agree(&self.comm, mine)
+    }
+}
+
+impl Remembering {
+    /// Gives every rank the energy of the body. Collective.
+    fn share_energy(&mut self) {
+        let Some(energy) = &mut self.energy else { return };
+        let mine = self.interior.as_ref().and_then(|interior| interior.bulk.energy()).unwrap_or_default();
+        let mut numbers = [mine.stored, mine.dissipated];
+        self.comm.process_at_rank(0).broadcast_into(&mut numbers[..]);
+        let [stored, dissipated] = numbers;
+        *energy = BodyEnergy { stored, dissipated };
     }
 }
 
