@@ -268,15 +268,6 @@ impl Friction {
     }
 }
 
-impl Friction {
-    /// The coefficient of friction.
-    pub fn coefficient(&self) -> f64 {
-        match *self {
-            Self::CoulombTanh { coefficient, .. } => coefficient,
-        }
-    }
-}
-
 /// One phase of the loading history.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Phase {
