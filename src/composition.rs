@@ -126,7 +126,7 @@ fn monolithic(
     if linear == Linear::Cholesky {
         tangent.declare_positive_definite()?;
     }
-    let integrator = integrator(comm, linear, &mut tangent)?;
+    let integrator = integrator(comm, scene, linear, &mut tangent)?;
     let strategy = Box::new(Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?);
     Ok(Problem { strategy, tangent, u, phases: phases(scene), integrator, mesh })
 }
@@ -177,7 +177,7 @@ fn condensed<B: Backing + 'static>(
     let held: Vec<[bool; 2]> = mesh.face.unknown.iter().map(|&unknown| mesh.held[unknown as usize]).collect();
     let linear = if 2 * held.len() > LARGE_FACE { Linear::OwnIterative } else { Linear::Own };
     let mut tangent = Matrix::shell(comm, u.local_len())?;
-    let integrator = integrator(comm, linear, &mut tangent)?;
+    let integrator = integrator(comm, scene, linear, &mut tangent)?;
     let strategy = Box::new(Condensed::new(interface, backing, &u, &held, scene.solver.tolerance)?);
     Ok(Problem { strategy, tangent, u, phases: phases(scene), integrator, mesh })
 }
@@ -208,8 +208,11 @@ fn periodic_column(scene: &Scene, solid: &Solid) -> Option<PeriodicColumn> {
     Some(PeriodicColumn::new(solid, layer.cells))
 }
 
-fn integrator(comm: &SimpleCommunicator, linear: Linear, tangent: &mut Matrix) -> Result<Integrator> {
-    Integrator::new(comm, Settings { linear, max_newton: MAX_NEWTON }, tangent)
+/// With nodal quadrature whole Newton steps are best, because those that overrun friction are bent node by node; Gauss
+/// points share their nodes, and a minimiser along the step must see to them.
+fn integrator(comm: &SimpleCommunicator, scene: &Scene, linear: Linear, tangent: &mut Matrix) -> Result<Integrator> {
+    let whole_steps = scene.contact.quadrature == scene::Quadrature::Nodal;
+    Integrator::new(comm, Settings { linear, max_newton: MAX_NEWTON, whole_steps }, tangent)
 }
 
 fn friction(friction: &scene::Friction) -> Friction {

@@ -116,6 +116,8 @@ pub struct Settings {
     pub linear: Linear,
     /// Newton iterations per attempt before the step is cut.
     pub max_newton: usize,
+    /// Whether Newton's steps are taken whole, or as long as makes the residual least.
+    pub whole_steps: bool,
 }
 
 /// A TS with its SNES, KSP and PC.
@@ -164,9 +166,9 @@ impl Integrator {
             check(ffi::TSGetSNES(ts, &mut snes))?;
             check(ffi::SNESSetTolerances(snes, 0.0, 0.0, 0.0, settings.max_newton as i32, -1))?;
             check(ffi::SNESGetLineSearch(snes, &mut search))?;
-            // Where friction turns between stick and slip the norm must rise before it falls: backtracking stalls and a
-            // minimiser along the step takes twice the iterations. What overruns friction is bent by the problem.
-            check(ffi::SNESLineSearchSetType(search, c"basic".as_ptr()))?;
+            // Where friction turns between stick and slip the norm must rise before it falls, and backtracking stalls.
+            let line_search = if settings.whole_steps { c"basic" } else { c"l2" };
+            check(ffi::SNESLineSearchSetType(search, line_search.as_ptr()))?;
             check(ffi::SNESGetKSP(snes, &mut ksp))?;
             check(ffi::KSPGetPC(ksp, &mut pc))?;
             let (method, preconditioner) = match settings.linear {
