@@ -53,6 +53,8 @@ pub struct Interface {
     /// The nodes, where the fields are shown; none = where the tractions act.
     shown: Option<Sites>,
     augmentation: Option<Augmentation>,
+    /// Evaluations of the tangential law in residuals and tangents.
+    tangential_laws: usize,
 }
 
 /// The residual of the face, internal minus external, N/m, per node: (x, z).
@@ -125,7 +127,7 @@ impl Interface {
         let shown = (quadrature != Quadrature::Nodal).then(|| Sites::new(&face, Quadrature::Nodal));
         let augment = |tolerance| Augmentation::new(tolerance, laws.penalty, acting.points.len());
         let augmentation = laws.augmentation.map(augment);
-        Self { face, laws, acting, shown, augmentation }
+        Self { face, laws, acting, shown, augmentation, tangential_laws: 0 }
     }
 
     /// The face.
@@ -136,6 +138,11 @@ impl Interface {
     /// The friction law.
     pub fn friction(&self) -> Option<&Friction> {
         self.laws.friction.as_ref()
+    }
+
+    /// How often residuals and tangents evaluated the tangential law.
+    pub fn tangential_laws(&self) -> usize {
+        self.tangential_laws
     }
 
     /// Whether steps may have to be solved again: see [`Self::augment`].
@@ -151,12 +158,15 @@ impl Interface {
         self.attempt(placement)?;
         out.clear();
         out.resize(self.face.x.len(), Vector2::zeros());
+        let mut in_contact = 0;
         for Answer { point, traction, .. } in self.answers(&self.acting, placement, surface) {
+            in_contact += usize::from(traction.pressure > 0.0);
             let force = point.frame.tr_mul(&(traction.residual() * point.weight));
             for (node, shape) in point.nodes.iter().zip(point.shape) {
                 out[*node] += force * shape;
             }
         }
+        self.count_laws(in_contact);
         Ok(())
     }
 
@@ -173,7 +183,9 @@ impl Interface {
         if !nodal {
             out.coupling.resize(self.face.edges.len(), [Matrix2::zeros(); 2]);
         }
+        let mut in_contact = 0;
         for (i, Answer { point, traction, .. }) in self.answers(&self.acting, placement, surface).enumerate() {
+            in_contact += usize::from(traction.pressure > 0.0);
             let block = point.frame.tr_mul(&(traction.tangent(shift) * point.weight)) * point.frame;
             let ([a, b], [na, nb]) = (point.nodes, point.shape);
             out.diagonal[a] += block * (na * na);
@@ -185,6 +197,7 @@ impl Interface {
                 }
             }
         }
+        self.count_laws(in_contact);
         Ok(())
     }
 
@@ -383,6 +396,13 @@ impl Interface {
             let traction = mpjr::traction(motion, resistance, self.laws.friction.as_ref());
             Answer { point, elevation, motion, traction }
         })
+    }
+
+    /// The tangential law is asked where there is pressure.
+    fn count_laws(&mut self, in_contact: usize) {
+        if self.laws.friction.is_some() {
+            self.tangential_laws += in_contact;
+        }
     }
 }
 

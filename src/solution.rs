@@ -8,7 +8,7 @@ use crate::composition::{self, Problem};
 use crate::error::Result;
 use crate::output::{HistoryRow, InterfaceFrame};
 use crate::scene::Scene;
-use crate::solve::{Counts, Driver, Observer, Report};
+use crate::solve::{BulkFields, Counts, Driver, Observer, Report};
 
 /// What a scene came to; the same on all ranks.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +19,8 @@ pub struct Solution {
     pub history: Vec<HistoryRow>,
     /// The contact face at the end of each phase.
     pub ends: Vec<InterfaceFrame>,
+    /// Bulk fields of this rank at the moments that the scene asks for them.
+    pub bulk: Vec<BulkFields>,
     /// What it took.
     pub counts: Counts,
 }
@@ -35,11 +37,11 @@ pub fn solve_on_mesh(comm: &SimpleCommunicator, scene: &Scene, mesh: &[u8]) -> R
 
 fn solve_problem(problem: Problem) -> Result<Solution> {
     let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, mesh } = problem;
-    let mut collected = Collected { history: vec![HistoryRow::default()], ends: Vec::new() };
+    let mut collected = Collected { history: vec![HistoryRow::default()], ends: Vec::new(), bulk: Vec::new() };
     let mut driver = Driver::new(strategy.as_mut(), &mut collected, &phases);
     driver.run(&mut integrator, &mut tangent, &mut u)?;
     let counts = driver.counts();
-    Ok(Solution { x: mesh.face.x, history: collected.history, ends: collected.ends, counts })
+    Ok(Solution { x: mesh.face.x, history: collected.history, ends: collected.ends, bulk: collected.bulk, counts })
 }
 
 impl Solution {
@@ -97,6 +99,7 @@ pub fn frame(report: &mut Report<'_>) -> Result<InterfaceFrame> {
 struct Collected {
     history: Vec<HistoryRow>,
     ends: Vec<InterfaceFrame>,
+    bulk: Vec<BulkFields>,
 }
 
 impl Observer for Collected {
@@ -104,6 +107,9 @@ impl Observer for Collected {
         self.history.push(row(&mut report)?);
         if report.phase_end {
             self.ends.push(frame(&mut report)?);
+        }
+        if report.bulk_output {
+            self.bulk.push(report.problem.bulk_fields(report.u)?);
         }
         Ok(())
     }

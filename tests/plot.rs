@@ -154,7 +154,9 @@ fn a_sweep_has_figure_7_with_its_bounds() {
     for text in ["(a) 1 arm; v in m/s", "elastic, G(0)", "elastic, G(∞)", "0.02154", "(b) steady value", "t/t₀"] {
         assert!(svgs[0].contains(text), "{text}");
     }
-    assert!(svgs[2].contains("(c) total friction") && svgs[2].contains("share of the arms in the work, %"));
+    for text in ["(c) total friction", "(d) peak", "share of the arms in the work, %", "steady stored energy"] {
+        assert!(svgs[2].contains(text), "{text}");
+    }
     check(at, &succeed(at, &["plot", "study", "figure7"]), &["figure7"]);
 
     std::fs::create_dir(at.join("empty")).unwrap();

@@ -37,7 +37,7 @@ struct Carried {
 
 impl Series {
     /// sum_i mu_i gain_i
-    fn gain(&self, factors: &[Factors]) -> f64 {
+    pub fn gain(&self, factors: &[Factors]) -> f64 {
         self.weights.iter().zip(factors).map(|(weight, factor)| weight * factor.gain).sum()
     }
 

@@ -20,7 +20,7 @@ use crate::rheology::Memory;
 use crate::snapshot::{NaturalOrder, Snapshot};
 
 pub use arms::{Arms, Series};
-pub use springs::{Account, Springs};
+pub use springs::{Account, Products, Springs};
 
 /// A stiffness with its modulus, and how it relaxes.
 pub struct Part {
@@ -89,12 +89,17 @@ impl Bulk {
 
     /// tangent = sum_p c_p K_p at step length `dt`.
     pub fn tangent(&self, dt: f64, tangent: &mut Matrix) -> Result<()> {
-        for (index, (part, secant)) in self.parts.iter().zip(self.secants(dt)).enumerate() {
+        self.sum(&self.secants(dt), tangent)
+    }
+
+    /// sum = sum_p factor_p K_p
+    pub fn sum(&self, factors: &[f64], sum: &mut Matrix) -> Result<()> {
+        for (index, (part, &factor)) in self.parts.iter().zip(factors).enumerate() {
             if index == 0 {
-                tangent.copy_from(&part.stiffness)?;
-                tangent.scale(secant)?;
+                sum.copy_from(&part.stiffness)?;
+                sum.scale(factor)?;
             } else {
-                tangent.add(secant, &part.stiffness)?;
+                sum.add(factor, &part.stiffness)?;
             }
         }
         Ok(())

@@ -9,7 +9,7 @@ use crate::energy::Energy;
 use crate::output::{HistoryRow, Status};
 use crate::petsc;
 use crate::scene::{Friction, Method, Penalty, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
-use crate::solve::Counts;
+use crate::solve::{Counts, Work};
 
 /// What is modelled and what is not: (modelled, not modelled).
 pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
@@ -159,6 +159,12 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
         0 => String::new(),
         pieces => format!(", {pieces} of them pieces of steps that were cut"),
     };
+    let sparse = match counts.work {
+        Work { factorisations: 0, .. } => String::new(),
+        Work { factorisations, solves, .. } => {
+            format!("; {factorisations} sparse factorisation(s), {solves} solves with them")
+        }
+    };
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{:<15}{} at t = {:.6} s", "status:", status.as_str(), last.time);
@@ -182,7 +188,7 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
         0 => String::new(),
         again => format!(", {again} augmentations"),
     };
-    let work = format!("{} steps{pieces}{augmented}, {} Newton iterations", counts.steps, counts.newton);
+    let work = format!("{} steps{pieces}{augmented}, {} Newton iterations{sparse}", counts.steps, counts.newton);
     let _ = writeln!(text, "{:<15}{work}", "work:");
     let _ = writeln!(
         text,
@@ -213,19 +219,35 @@ fn balance(energy: &Energy) -> String {
 /// How the scene is solved, and why.
 fn strategy(scene: &Scene) -> String {
     let asked = if scene.solver.strategy == Strategy::Auto { "auto picked " } else { "" };
-    match composition::form(scene) {
-        Form::Monolithic => "monolithic: all unknowns in one sparse system, factorised at each Newton iteration".into(),
-        Form::Following => format!(
-            "{asked}condensed: all moduli keep their ratios, so that the interior follows the contact\n\
-             {:15}face; Newton runs on the nodes in contact",
-            ""
-        ),
-        Form::Remembering => format!(
-            "{asked}condensed: not all moduli relax alike, so that the interior has a memory of its own; one\n\
-             {:15}factorisation per step length, two interior solves per step, Newton on the nodes in contact",
-            ""
-        ),
-    }
+    let by_wave = scene.period().is_some();
+    let lines = match composition::form(scene) {
+        Form::Monolithic => vec![
+            "monolithic: all unknowns in one sparse system; the bulk is factorised once per step length, and Newton",
+            "solves with it and with the compliance of the nodes that came into contact so far",
+        ],
+        Form::Following => {
+            let mut lines = vec![
+                "condensed: all moduli keep their ratios, so that the interior follows the contact",
+                "face; Newton runs on the nodes in contact",
+            ];
+            if by_wave {
+                lines.push(
+                    "periodic layer: the face's compliance is had wavenumber by wavenumber, without a sparse matrix",
+                );
+            }
+            lines
+        }
+        Form::Remembering if by_wave => vec![
+            "condensed: not all moduli relax alike, so that the interior has a memory of its own;",
+            "periodic layer: it is solved for wavenumber by wavenumber (by the first rank alone), once per step,",
+            "without a sparse matrix; Newton runs on the nodes in contact",
+        ],
+        Form::Remembering => vec![
+            "condensed: not all moduli relax alike, so that the interior has a memory of its own; one",
+            "factorisation per step length, two interior solves per step, Newton on the nodes in contact",
+        ],
+    };
+    format!("{asked}{}", lines.join(&format!("\n{:15}", "")))
 }
 
 /// A rough cost, from measured times: within a factor of three on a recent core.
@@ -241,24 +263,25 @@ impl Estimate {
         let unknowns = outline.unknowns as f64;
         let face = 2.0 * (outline.face.edges + 1) as f64;
         let newton = 4.0;
-        // Nested dissection in the plane: n^1.5 operations, n log n entries; half of both when symmetric.
+        // Nested dissection in the plane: n^1.5 operations, n log n entries; about half of both when symmetric.
         let entries = |symmetry: f64| 8.0 * 5.0 * unknowns * unknowns.max(2.0).log2() * symmetry;
         let (matrix, vector) = (18.0 * 12.0 * unknowns, 8.0 * unknowns);
         let arms = (scene.materials.iter().map(|material| material.arms.len()).sum::<usize>() + 4) as f64;
         // Half of the face in contact: a small dense factorisation and some products with the compliance.
         let contact = newton * (2e-10 * (face / 2.0).powi(3).min(face.powi(2) * 300.0) + 3e-9 * face * face);
-        let compliance = 8.0 * face * face;
-        let symmetry = if scene.friction.is_some() { 1.0 } else { 0.6 };
+        let solve = 3e-7 * unknowns * (1.0 + 0.05 * unknowns.max(2.0).log2());
+        let by_wave = scene.period().is_some();
+        let compliance = if by_wave { 0.0 } else { 8.0 * face * face };
         let (step, memory) = match composition::form(scene) {
             Form::Monolithic => (
-                newton * (1.3e-8 * unknowns.powf(1.5) * symmetry + 1.0e-6 * unknowns),
-                entries(symmetry) + 3.0 * matrix + arms * vector,
+                newton * (2.0 * solve + 1.0e-7 * unknowns) + contact,
+                8.0 * face * face + entries(0.6) + 4.0 * matrix + arms * vector,
             ),
             Form::Following => (contact, compliance + 80.0 * unknowns),
-            Form::Remembering => (
-                contact + 2.0 * 6e-7 * unknowns * (1.0 + 0.05 * unknowns.max(2.0).log2()),
-                compliance + entries(0.6) + 3.0 * matrix + arms * vector,
-            ),
+            Form::Remembering if by_wave => {
+                (contact + 3e-8 * unknowns * arms, (12.0 + arms) * vector + 80.0 * unknowns)
+            }
+            Form::Remembering => (contact + 2.0 * solve, compliance + entries(0.6) + 3.0 * matrix + arms * vector),
         };
         Self { step, memory: 5e7 + memory }
     }

@@ -13,8 +13,10 @@
 //! F = mu_0 S u + sum_i mu_i S z_i+,     S z_i+ = decay_i S z_i + gain_i (S u+ - S u)
 //! ```
 
-use super::super::BulkFields;
+use std::rc::Rc;
+
 use super::super::face::ContactFace;
+use super::super::{BulkFields, Work};
 use super::Backing;
 use super::compliance::Compliance;
 use super::interior::Interior;
@@ -36,7 +38,7 @@ pub struct Relaxation {
 /// A body that follows its face.
 pub struct Following {
     /// The elastic compliance at the instantaneous moduli, on rank 0.
-    pub compliance: Option<Compliance>,
+    pub compliance: Option<Rc<Compliance>>,
     /// Its largest entry, m per N/m, on all ranks.
     pub softness: f64,
     /// None = elastic.
@@ -80,7 +82,7 @@ impl Backing for Following {
     }
 
     fn compliance(&self) -> Option<&Compliance> {
-        self.compliance.as_ref()
+        self.compliance.as_deref()
     }
 
     fn softness(&self) -> f64 {
@@ -89,6 +91,11 @@ impl Backing for Following {
 
     fn takes_forces(&self) -> bool {
         false
+    }
+
+    fn work(&self) -> Work {
+        let memory_fields = self.relaxation.as_ref().map_or(0, |relaxation| relaxation.arms.len());
+        Work { memory_fields, ..Work::default() }
     }
 
     fn keep_account(&mut self, layout: &Vector) -> Result<()> {
