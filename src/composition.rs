@@ -13,7 +13,7 @@ use mpi::traits::{Communicator, Root};
 use crate::bulk::Arms;
 use crate::element::mpjr::Quadrature;
 use crate::error::Result;
-use crate::friction::Friction;
+use crate::friction::{CoulombTanh, ElasticSlip, Friction};
 use crate::interface::{Interface, Laws, Surface};
 use crate::loading::{self, Adaptive, Motion, Phase, Placement};
 use crate::mesh::Mesh;
@@ -106,8 +106,15 @@ fn assemble(
     compliances: &Compliances,
 ) -> Result<Problem> {
     let materials = Materials::new(scene);
-    let penalty = body::penalty(scene, &mesh);
-    let laws = Laws { profile, penalty, friction: scene.friction.as_ref().map(friction) };
+    let laws = Laws {
+        profile,
+        penalty: body::penalty(scene, &mesh),
+        augmentation: match scene.contact.method {
+            scene::Method::Penalty => None,
+            scene::Method::Augmented { augmentation_tolerance } => Some(augmentation_tolerance),
+        },
+        friction: scene.friction.as_ref().map(friction),
+    };
     let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
     let solid = Solid { mesh, quadrilateral: body::quadrilateral(scene), regions: materials.regions.clone() };
     let mut problem = match form(scene) {
@@ -145,7 +152,7 @@ fn monolithic(
     comm: &SimpleCommunicator,
     scene: &Scene,
     (solid, materials): (Solid, Materials),
-    interface: Interface,
+    mut interface: Interface,
 ) -> Result<Problem> {
     let mesh = solid.mesh.clone();
     let body = Body::new(comm.duplicate(), solid)?;
@@ -153,11 +160,11 @@ fn monolithic(
     let bulk = materials.bulk(&body, &u)?;
     let mut tangent = bulk.new_tangent()?;
     tangent.set_near_null_space(&mut body.coordinates()?)?;
-    if !interface.has_friction() {
+    if interface.friction().is_none() {
         tangent.declare_positive_definite()?;
     }
-    let integrator = integrator(comm, Linear::Preconditioned, &mut tangent)?;
-    let phases = phases(scene, clearance(scene, &interface)?);
+    let integrator = integrator(comm, scene, Linear::Preconditioned, &mut tangent)?;
+    let phases = phases(scene, clearance(scene, &mut interface)?);
     let strategy = Box::new(Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?);
     Ok(Problem { strategy, tangent, u, phases, integrator, mesh })
 }
@@ -203,13 +210,13 @@ fn condensed<B: Backing + 'static>(
     scene: &Scene,
     mesh: Mesh,
     u: Vector,
-    (interface, backing): (Interface, B),
+    (mut interface, backing): (Interface, B),
 ) -> Result<Problem> {
     let held: Vec<[bool; 2]> = mesh.face.unknown.iter().map(|&unknown| mesh.held[unknown as usize]).collect();
     let linear = if 2 * held.len() > LARGE_FACE { Linear::OwnIterative } else { Linear::Own };
     let mut tangent = Matrix::shell(comm, u.local_len())?;
-    let integrator = integrator(comm, linear, &mut tangent)?;
-    let phases = phases(scene, clearance(scene, &interface)?);
+    let integrator = integrator(comm, scene, linear, &mut tangent)?;
+    let phases = phases(scene, clearance(scene, &mut interface)?);
     let strategy = Box::new(Condensed::new(interface, backing, &u, &held, scene.solver.tolerance)?);
     Ok(Problem { strategy, tangent, u, phases, integrator, mesh })
 }
@@ -244,14 +251,20 @@ fn periodic_column(scene: &Scene, solid: &Solid) -> Option<PeriodicColumn> {
     Some(PeriodicColumn::new(solid, layer.cells))
 }
 
-fn integrator(comm: &SimpleCommunicator, linear: Linear, tangent: &mut Matrix) -> Result<Integrator> {
-    Integrator::new(comm, Settings { linear, max_newton: MAX_NEWTON }, tangent)
+/// With nodal quadrature whole Newton steps are best, because those that overrun friction are bent node by node; Gauss
+/// points share their nodes, and a minimiser along the step must see to them.
+fn integrator(comm: &SimpleCommunicator, scene: &Scene, linear: Linear, tangent: &mut Matrix) -> Result<Integrator> {
+    let whole_steps = scene.contact.quadrature == scene::Quadrature::Nodal;
+    Integrator::new(comm, Settings { linear, max_newton: MAX_NEWTON, whole_steps }, tangent)
 }
 
 fn friction(friction: &scene::Friction) -> Friction {
     match *friction {
         scene::Friction::CoulombTanh { coefficient, regularisation } => {
-            Friction::coulomb_tanh(coefficient, regularisation)
+            Friction::CoulombTanh(CoulombTanh { coefficient, regularisation })
+        }
+        scene::Friction::CoulombElasticSlip { coefficient, elastic_slip } => {
+            Friction::ElasticSlip(ElasticSlip { coefficient, elastic_slip })
         }
     }
 }
@@ -264,7 +277,7 @@ fn quadrature(quadrature: scene::Quadrature) -> Quadrature {
 }
 
 /// The gap to close before the indenter touches the face at rest, m; only for scenes with adaptive steps.
-fn clearance(scene: &Scene, interface: &Interface) -> Result<f64> {
+fn clearance(scene: &Scene, interface: &mut Interface) -> Result<f64> {
     if !scene.is_adaptive() {
         return Ok(0.0);
     }

@@ -76,7 +76,9 @@ fn assert_sound(ledger: &Ledger) {
         assert!((sum - ledger.work[row]).abs() < 1e-14 * ledger.largest_work(), "row {row}");
     }
     for name in ["viscoelastic_dissipation", "friction_dissipation"] {
-        assert!(ledger.term(name).windows(2).all(|pair| pair[1] >= pair[0]), "{name}");
+        // But for the round-off of what is nothing.
+        let roundoff = 1e-14 * ledger.largest_work();
+        assert!(ledger.term(name).windows(2).all(|pair| pair[1] >= pair[0] - roundoff), "{name}");
     }
     for name in ["stored", "penalty"] {
         assert!(ledger.term(name).iter().all(|energy| *energy >= -1e-14 * ledger.largest_work()), "{name}");

@@ -284,8 +284,16 @@ impl Random {
         let rms = self.of(&[Rms::RmsSlope(radius), Rms::RmsHeight(radius)]);
         let file = self.of(&["a.txt", "../é \"b\"/c.csv", "/abs/d"]).to_owned();
         let period = self.of(&[None, Some(wavelength)]);
-        let friction =
-            Friction::CoulombTanh { coefficient: 10.0 * self.unit(), regularisation: 1e-12 * self.positive() };
+        let [coefficient, small, tolerance] = [10.0 * self.unit(), 1e-12 * self.positive(), self.unit()];
+        let friction = self.of(&[
+            Friction::CoulombTanh { coefficient, regularisation: small },
+            Friction::CoulombElasticSlip { coefficient, elastic_slip: small },
+        ]);
+        let quadrature = self.of(&[Quadrature::Nodal, Quadrature::Gauss]);
+        let method = match quadrature {
+            Quadrature::Nodal => Method::Augmented { augmentation_tolerance: 1e-6 * tolerance },
+            Quadrature::Gauss => Method::Penalty,
+        };
         let ends = phases.iter().take(2).map(|phase| When::PhaseEnd(phase.name.clone()));
         let times = [When::Time(phases[0].duration * self.unit())];
         let body = if self.below(4) == 0 { self.mesh_file() } else { self.layer(wavelength) };
@@ -313,10 +321,7 @@ impl Random {
                     seed: (seed * 1e18) as u64,
                 },
             ]),
-            contact: Contact {
-                penalty: Penalty::Stiffness(1e200 * self.positive()),
-                quadrature: self.of(&[Quadrature::Nodal, Quadrature::Gauss]),
-            },
+            contact: Contact { penalty: Penalty::Stiffness(1e200 * self.positive()), quadrature, method },
             friction: self.of(&[None, Some(friction)]),
             output: Output {
                 interface_every: self.below(3) as usize,

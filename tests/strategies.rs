@@ -89,6 +89,12 @@ fn condensed_is_the_same_discrete_solution() {
             cases.push(vec![change.to_owned(), format!("material.poisson_rule={rule}"), "layer.sides=free".into()]);
         }
     }
+    for rule in ["constant_ratio", "constant_bulk_modulus"] {
+        let rule = format!("material.poisson_rule={rule}");
+        let friction = "friction={ law = \"coulomb_elastic_slip\", coefficient = 0.3, elastic_slip = 1e-6 }".to_owned();
+        cases.push(vec![friction.clone(), rule.clone()]);
+        cases.push(vec![friction, rule, "contact.method=augmented".into(), "contact.penalty=1e4".into()]);
+    }
     let arms = "material.bulk_arms=[{ weight = 0.2, time = 0.05 }, { weight = 0.3, time = 2.0 }]";
     cases.push(vec!["material.poisson_rule=bulk_arms".into(), arms.into()]);
     for case in cases {

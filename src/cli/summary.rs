@@ -8,7 +8,7 @@ use crate::composition::{self, Form, Outline, Stretch};
 use crate::energy::Energy;
 use crate::output::{HistoryRow, Status};
 use crate::petsc;
-use crate::scene::{Friction, Penalty, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
+use crate::scene::{Friction, Method, Penalty, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
 use crate::solve::{Counts, Work};
 
 /// What is modelled and what is not: (modelled, not modelled).
@@ -34,10 +34,19 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
         Some(Friction::CoulombTanh { coefficient, regularisation }) => {
             yes.push(format!("friction: f = {coefficient}, regularised by tanh over {regularisation} m/s"));
         }
+        Some(Friction::CoulombElasticSlip { coefficient, elastic_slip }) => {
+            yes.push(format!("friction: f = {coefficient}, sticking up to an elastic slip of {elastic_slip} m"));
+        }
         None => no.push("friction (symmetric solver)".to_owned()),
     }
+    let method = match scene.contact.method {
+        Method::Penalty => String::new(),
+        Method::Augmented { augmentation_tolerance } => {
+            format!("augmented Lagrangian up to {augmentation_tolerance} of the displacement, from a ")
+        }
+    };
     yes.push(format!(
-        "contact: penalty {}, {} quadrature",
+        "contact: {method}penalty of {}, {} quadrature",
         penalty(scene),
         match scene.contact.quadrature {
             Quadrature::Nodal => "nodal",
@@ -174,17 +183,19 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     );
     let _ = writeln!(
         text,
-        "{:<15}{:.4} of the face, {:.4} of it sticking; penetration {:.1e} m",
-        "final contact:", last.contact_fraction, last.stick_fraction, last.max_penetration
+        "{:<15}{:.4} of the face, {:.4} of it sticking; penetration {:.1e} m, slip while sticking {:.1e} m",
+        "final contact:", last.contact_fraction, last.stick_fraction, last.max_penetration, last.stuck_slip
     );
     if scene.output.energy {
         let _ = writeln!(text, "{:<15}{}", "energy:", balance(&last.energy));
     }
-    let _ = writeln!(
-        text,
-        "{:<15}{} steps{rejected}{pieces}, {} Newton iterations{sparse}",
-        "work:", counts.steps, counts.newton
-    );
+    let augmented = match counts.augmentations {
+        0 => String::new(),
+        again => format!(", {again} augmentations"),
+    };
+    let work =
+        format!("{} steps{rejected}{pieces}{augmented}, {} Newton iterations{sparse}", counts.steps, counts.newton);
+    let _ = writeln!(text, "{:<15}{work}", "work:");
     let _ = writeln!(
         text,
         "{:<15}{} on {ranks} rank(s): set-up {}, assembly {},\n{:<15}linear solver {}, output {}",

@@ -43,7 +43,9 @@ pub fn largest(solution: &Solution, field: &[f64], exact: impl Fn(f64) -> f64, (
 }
 
 const EDGE: &str = "one node at each edge";
-const EDGES: &str = "mesh: (k h)^2, next to the edges";
+/// The reason of a tolerance of fields.
+pub const EDGES: &str = "mesh: (k h)^2, next to the edges";
+
 /// A wave on a layer two wavelengths deep; the depth is felt by e^{-2kH} = 1e-11 at most, but by the mean,
 /// whose compliance is the layer's. The pressures are compared at the mean pressure found.
 fn westergaard(n: usize, approach: f64) -> Case {

@@ -168,7 +168,7 @@ impl fmt::Display for Tally {
 pub fn cases(quick: bool) -> Result<Vec<Case>> {
     let mut list = kernel::cases(quick);
     list.extend(half_space::cases(quick));
-    list.extend(tangential::cases());
+    list.extend(tangential::cases(quick));
     if !quick {
         list.extend(appendix_a::cases()?);
     }

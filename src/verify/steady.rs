@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::setting::{Phase, Setting, one_arm};
+use super::setting::{Phase, Setting, one_arm, tanh};
 use super::{Case, Row, resolution};
 use crate::oracle::PoissonRule;
 use crate::oracle::steady::Load;
@@ -36,7 +36,7 @@ fn slid(n: usize, velocity: f64, rule: PoissonRule, approach: f64) -> Setting {
     let steps = (distance * n as f64).ceil();
     let slide = Phase::slide(velocity, steps / n as f64, steps as usize, approach);
     let phases = vec![Phase::press(10.0, 20, approach), slide];
-    Setting { friction: Some([0.2, 0.01 * velocity]), ..Setting::new(n, one_arm(0.3, rule), phases) }
+    Setting { friction: Some(tanh(0.2, 0.01 * velocity)), ..Setting::new(n, one_arm(0.3, rule), phases) }
 }
 
 /// Full contact is exact: |integral of p h'| = (1/2) wavelength k g0^2 |Im 1/(C_zz - i f C_xz)|, C at G*(k v). Mesh and
