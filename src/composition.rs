@@ -11,7 +11,7 @@ use mpi::traits::{Communicator, Root};
 use crate::bulk::{Arms, Bulk};
 use crate::element::mpjr::Quadrature;
 use crate::error::Result;
-use crate::friction::Friction;
+use crate::friction::{CoulombTanh, ElasticSlip, Friction};
 use crate::interface::{Interface, Laws};
 use crate::loading::{self, Motion, Phase};
 use crate::mesh::Mesh;
@@ -61,7 +61,15 @@ pub fn build_with_profile(comm: &SimpleCommunicator, scene: &Scene, profile: Box
 
 fn assemble(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, profile: Box<dyn Profile>) -> Result<Problem> {
     let materials = Materials::new(scene);
-    let laws = Laws { profile, penalty: scene.contact.penalty, friction: scene.friction.as_ref().map(friction) };
+    let laws = Laws {
+        profile,
+        penalty: scene.contact.penalty,
+        augmentation: match scene.contact.method {
+            scene::Method::Penalty => None,
+            scene::Method::Augmented { augmentation_tolerance } => Some(augmentation_tolerance),
+        },
+        friction: scene.friction.as_ref().map(friction),
+    };
     let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
     let solid = Solid { mesh, quadrilateral: body::quadrilateral(scene), regions: materials.regions.clone() };
     match form(scene) {
@@ -103,7 +111,7 @@ fn monolithic(
     let bulk = materials.bulk(&body, &u)?;
     let mut tangent = bulk.new_tangent()?;
     tangent.set_near_null_space(&mut body.coordinates()?)?;
-    let linear = if interface.has_friction() { Linear::Lu } else { Linear::Cholesky };
+    let linear = if interface.friction().is_some() { Linear::Lu } else { Linear::Cholesky };
     if linear == Linear::Cholesky {
         tangent.declare_positive_definite()?;
     }
@@ -196,7 +204,10 @@ fn integrator(comm: &SimpleCommunicator, linear: Linear, tangent: &mut Matrix) -
 fn friction(friction: &scene::Friction) -> Friction {
     match *friction {
         scene::Friction::CoulombTanh { coefficient, regularisation } => {
-            Friction::coulomb_tanh(coefficient, regularisation)
+            Friction::CoulombTanh(CoulombTanh { coefficient, regularisation })
+        }
+        scene::Friction::CoulombElasticSlip { coefficient, elastic_slip } => {
+            Friction::ElasticSlip(ElasticSlip { coefficient, elastic_slip })
         }
     }
 }

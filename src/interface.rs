@@ -3,16 +3,22 @@
 //! Every rank holds the whole face (it is one dimension smaller than the body) and evaluates all of it from the same
 //! numbers, so every rank sees the same error and the same totals; each rank assembles only the rows that it owns.
 
+mod augmentation;
 mod oscillation;
+mod sites;
 
 use nalgebra::{Matrix2, Vector2};
 
-use crate::element::mpjr::{self, Frame, Motion, Over, Quadrature, Traction, Under};
+use crate::element::mpjr::{self, Motion, Quadrature, Resistance, Traction, Under};
 use crate::error::Result;
 use crate::friction::Friction;
 use crate::loading::Placement;
 use crate::mesh::Face;
 use crate::profile::{Elevation, Profile};
+use crate::snapshot::Snapshot;
+
+use augmentation::{Augmentation, Multipliers};
+use sites::{Point, Sites};
 
 /// Displacements and rates of the face's nodes, in the order of the face: x, z of each.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,8 +33,10 @@ pub struct Surface {
 pub struct Laws {
     /// The rigid profile.
     pub profile: Box<dyn Profile>,
-    /// Penalty alpha, Pa/m.
+    /// Penalty alpha, Pa/m; with multipliers, that to begin with.
     pub penalty: f64,
+    /// The tolerance of the augmented Lagrangian; none = penalty only.
+    pub augmentation: Option<f64>,
     /// None = frictionless.
     pub friction: Option<Friction>,
 }
@@ -37,25 +45,11 @@ pub struct Laws {
 pub struct Interface {
     face: Face,
     laws: Laws,
-    points: Vec<Point>,
-    nodal: bool,
-    /// The indenter's place that `elevations` hold for.
-    placed: Option<Placement>,
-    elevations: Vec<Elevation>,
-}
-
-/// An integration point of the face.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Point {
-    nodes: [usize; 2],
-    shape: [f64; 2],
-    /// m
-    weight: f64,
-    /// m
-    x: f64,
-    /// How far below the highest node of the face, m.
-    recess: f64,
-    frame: Frame,
+    /// Where the tractions act.
+    acting: Sites,
+    /// The nodes, where the fields are shown; none = where the tractions act.
+    shown: Option<Sites>,
+    augmentation: Option<Augmentation>,
 }
 
 /// The residual of the face, internal minus external, N/m, per node: (x, z).
@@ -86,6 +80,8 @@ pub struct Totals {
     pub stick_fraction: f64,
     /// m
     pub max_penetration: f64,
+    /// The largest slip of a sticking point while it was to stick, m: the error of the regularisation.
+    pub stuck_slip: f64,
     /// How much the tractions oscillate from node to node; 1 = nothing but a checkerboard.
     pub traction_oscillation: f64,
 }
@@ -101,6 +97,8 @@ pub struct Fields {
     pub gap: Vec<f64>,
     /// w, m/s
     pub slip_rate: Vec<f64>,
+    /// Slip while sticking, m.
+    pub stuck: Vec<f64>,
 }
 
 impl Surface {
@@ -120,25 +118,11 @@ impl Surface {
 impl Interface {
     /// The interface elements of `face`.
     pub fn new(face: Face, laws: Laws, quadrature: Quadrature) -> Self {
-        let points = match quadrature {
-            Quadrature::Nodal => lumped_points(&face),
-            Quadrature::Gauss => face
-                .edges
-                .iter()
-                .flat_map(|edge| {
-                    quadrature.points(edge.length).map(|point| Point {
-                        nodes: edge.ends,
-                        shape: point.shape,
-                        weight: point.weight,
-                        x: edge.start + point.shape[1] * edge.length * edge.tangent.x,
-                        recess: point.shape[0] * face.recess[edge.ends[0]] + point.shape[1] * face.recess[edge.ends[1]],
-                        frame: mpjr::frame(edge.tangent),
-                    })
-                })
-                .collect(),
-        };
-        let elevations = Vec::with_capacity(points.len());
-        Self { face, laws, points, nodal: quadrature == Quadrature::Nodal, placed: None, elevations }
+        let acting = Sites::new(&face, quadrature);
+        let shown = (quadrature != Quadrature::Nodal).then(|| Sites::new(&face, Quadrature::Nodal));
+        let augment = |tolerance| Augmentation::new(tolerance, laws.penalty, acting.points.len());
+        let augmentation = laws.augmentation.map(augment);
+        Self { face, laws, acting, shown, augmentation }
     }
 
     /// The face.
@@ -146,20 +130,14 @@ impl Interface {
         &self.face
     }
 
-    /// Whether a friction law is modelled.
-    pub fn has_friction(&self) -> bool {
-        self.laws.friction.is_some()
+    /// The friction law.
+    pub fn friction(&self) -> Option<&Friction> {
+        self.laws.friction.as_ref()
     }
 
-    /// Whether friction still answers to the slip rate at this one, m/s.
-    pub fn grips(&self, slip_rate: f64) -> bool {
-        let answer = |law: &Friction, rate| law.shear(1.0, rate).by_rate;
-        self.laws.friction.as_ref().is_some_and(|law| answer(law, slip_rate) > 1e-6 * answer(law, 0.0))
-    }
-
-    /// The largest share of the pressure that friction takes: f.
-    pub fn largest_drag(&self) -> f64 {
-        self.laws.friction.as_ref().map_or(0.0, |law| law.shear(1.0, f64::MAX).shear)
+    /// Whether steps may have to be solved again: see [`Self::augment`].
+    pub fn is_augmented(&self) -> bool {
+        self.augmentation.is_some()
     }
 
     /// out = the residual with the indenter at `placement`.
@@ -167,12 +145,11 @@ impl Interface {
     /// # Errors
     /// A domain error where the profile is not known.
     pub fn residual(&mut self, placement: Placement, surface: &Surface, out: &mut Residual) -> Result<()> {
-        self.place(placement)?;
+        self.attempt(placement)?;
         out.clear();
         out.resize(self.face.x.len(), Vector2::zeros());
-        for (point, elevation) in self.points.iter().zip(&self.elevations) {
-            let force = self.traction(point, elevation, placement, surface).residual() * point.weight;
-            let force = point.frame.tr_mul(&force);
+        for Answer { point, traction, .. } in self.answers(&self.acting, placement, surface) {
+            let force = point.frame.tr_mul(&(traction.residual() * point.weight));
             for (node, shape) in point.nodes.iter().zip(point.shape) {
                 out[*node] += force * shape;
             }
@@ -185,19 +162,19 @@ impl Interface {
     /// # Errors
     /// As for [`Self::residual`].
     pub fn tangent(&mut self, placement: Placement, surface: &Surface, shift: f64, out: &mut Tangent) -> Result<()> {
-        self.place(placement)?;
+        self.attempt(placement)?;
         out.diagonal.clear();
         out.diagonal.resize(self.face.x.len(), Matrix2::zeros());
         out.coupling.clear();
-        if !self.nodal {
+        let nodal = self.shown.is_none();
+        if !nodal {
             out.coupling.resize(self.face.edges.len(), [Matrix2::zeros(); 2]);
         }
-        for (i, (point, elevation)) in self.points.iter().zip(&self.elevations).enumerate() {
-            let block = self.traction(point, elevation, placement, surface).tangent(shift) * point.weight;
-            let block = point.frame.tr_mul(&block) * point.frame;
+        for (i, Answer { point, traction, .. }) in self.answers(&self.acting, placement, surface).enumerate() {
+            let block = point.frame.tr_mul(&(traction.tangent(shift) * point.weight)) * point.frame;
             let ([a, b], [na, nb]) = (point.nodes, point.shape);
             out.diagonal[a] += block * (na * na);
-            if !self.nodal {
+            if !nodal {
                 out.diagonal[b] += block * (nb * nb);
                 // Two points an edge.
                 for coupling in &mut out.coupling[i / 2] {
@@ -213,24 +190,23 @@ impl Interface {
     /// # Errors
     /// As for [`Self::residual`].
     pub fn totals(&mut self, placement: Placement, surface: &Surface) -> Result<Totals> {
-        self.place(placement)?;
+        self.attempt(placement)?;
         let mut totals = Totals::default();
         let (mut length, mut contact, mut stick) = (0.0, 0.0, 0.0);
-        for (point, elevation) in self.points.iter().zip(&self.elevations) {
-            let motion = motion(point, elevation, placement, surface);
-            let traction = mpjr::traction(motion, self.laws.penalty, self.laws.friction.as_ref());
+        for Answer { point, elevation, motion, traction } in self.answers(&self.acting, placement, surface) {
             let force = point.frame.tr_mul(&traction.residual());
             let dx = point.weight * point.frame[(0, 0)];
             totals.normal_force += point.weight * force.y;
-            totals.tangential_force += dx * traction.shear;
+            totals.tangential_force += dx * traction.shear.shear;
             totals.hysteretic_force += dx * traction.pressure * elevation.slope;
-            totals.max_penetration = totals.max_penetration.max(motion.normal - motion.clearance);
+            totals.max_penetration = totals.max_penetration.max(motion.penetration());
             length += point.weight;
             if traction.pressure > 0.0 {
                 contact += point.weight;
-                if self.laws.friction.as_ref().is_some_and(|law| law.sticks(motion.slip_rate)) {
-                    stick += point.weight;
-                }
+            }
+            if traction.shear.sticks {
+                stick += point.weight;
+                totals.stuck_slip = totals.stuck_slip.max(traction.shear.stuck.abs());
             }
         }
         totals.contact_fraction = contact / length;
@@ -245,27 +221,117 @@ impl Interface {
     ///
     /// # Errors
     /// As for [`Self::residual`].
-    pub fn fields(&self, placement: Placement, surface: &Surface) -> Result<Fields> {
-        let nodes = self.face.x.len();
-        let zeros = || vec![0.0; nodes];
-        let mut fields = Fields { pressure: zeros(), shear: zeros(), gap: zeros(), slip_rate: zeros() };
-        let points = lumped_points(&self.face);
+    pub fn fields(&mut self, placement: Placement, surface: &Surface) -> Result<Fields> {
+        self.place_shown(placement)?;
+        let sites = self.shown.as_ref().unwrap_or(&self.acting);
+        let zeros = || vec![0.0; self.face.x.len()];
+        let mut fields = Fields { pressure: zeros(), shear: zeros(), gap: zeros(), slip_rate: zeros(), stuck: zeros() };
         let mut length = zeros();
-        for point in &points {
+        for point in &sites.points {
             length[point.nodes[0]] += point.weight;
         }
-        for point in &points {
+        for Answer { point, motion, traction, .. } in self.answers(sites, placement, surface) {
             let node = point.nodes[0];
             let share = point.weight / length[node];
-            let elevation = self.laws.profile.at(point.x - placement.sliding)?;
-            let motion = motion(point, &elevation, placement, surface);
-            let traction = mpjr::traction(motion, self.laws.penalty, self.laws.friction.as_ref());
             fields.pressure[node] += share * traction.pressure;
-            fields.shear[node] += share * traction.shear;
-            fields.gap[node] += share * (motion.clearance - motion.normal);
-            fields.slip_rate[node] += share * motion.slip_rate;
+            fields.shear[node] += share * traction.shear.shear;
+            fields.gap[node] -= share * motion.penetration();
+            fields.slip_rate[node] += share * motion.slip.rate;
+            fields.stuck[node] += share * traction.shear.stuck;
         }
         Ok(fields)
+    }
+
+    /// What to add to the displacements of nodes, m, that a Newton step takes from one surface to another: see
+    /// [`Friction::limited`].
+    ///
+    /// # Errors
+    /// As for [`Self::residual`].
+    pub fn limit(&mut self, placement: Placement, [from, to]: [&Surface; 2]) -> Result<Vec<(usize, Vector2<f64>)>> {
+        let Some(law) = self.laws.friction else { return Ok(Vec::new()) };
+        self.place_shown(placement)?;
+        let sites = self.shown.as_ref().unwrap_or(&self.acting);
+        let pairs = self.answers(sites, placement, from).zip(sites.motions(placement, to));
+        let limited = |(Answer { point, motion, traction, .. }, (_, to)): (Answer<'_>, (_, Motion))| {
+            let rate = law.limited(motion.slip, to.slip).filter(|_| traction.pressure > 0.0)?;
+            let tangent = point.frame.row(0).transpose();
+            Some((point.nodes[0], tangent * ((to.slip.rate - rate) * placement.dt)))
+        };
+        Ok(pairs.filter_map(limited).collect())
+    }
+
+    /// Whether a step that was solved must be solved again, with other multipliers; they are then what it begins with.
+    ///
+    /// # Errors
+    /// As for [`Self::residual`]; a solver error where that does not come to an end.
+    pub fn augment(&mut self, placement: Placement, surface: &Surface) -> Result<bool> {
+        self.attempt(placement)?;
+        if !self.is_augmented() {
+            return Ok(false);
+        }
+        let mut deepest = 0.0_f64;
+        let pressure = |Answer { motion, traction, .. }: Answer<'_>| {
+            if traction.pressure > 0.0 {
+                deepest = deepest.max(motion.normal.abs());
+            }
+            traction.pressure
+        };
+        let pressure: Vec<f64> = self.answers(&self.acting, placement, surface).map(pressure).collect();
+        self.augmentation.as_mut().map_or(Ok(false), |augmentation| augmentation.update(&pressure, deepest))
+    }
+
+    /// Takes multipliers and the memory of friction to the end of an accepted step.
+    ///
+    /// # Errors
+    /// As for [`Self::residual`].
+    pub fn commit(&mut self, placement: Placement, surface: &Surface) -> Result<()> {
+        self.place_shown(placement)?;
+        if let Some(augmentation) = &mut self.augmentation {
+            augmentation.commit();
+        }
+        if self.laws.friction.is_none() {
+            return Ok(());
+        }
+        let stuck = |answer: Answer<'_>| answer.traction.shear.stuck;
+        let acting: Vec<f64> = self.answers(&self.acting, placement, surface).map(stuck).collect();
+        if let Some(mut shown) = self.shown.take() {
+            shown.stuck = self.answers(&shown, placement, surface).map(stuck).collect();
+            self.shown = Some(shown);
+        }
+        self.acting.stuck = acting;
+        Ok(())
+    }
+
+    /// Adds the accepted multipliers and the memory of friction to a snapshot.
+    pub fn save(&self, snapshot: &mut Snapshot) {
+        if let Some(augmentation) = &self.augmentation {
+            let Multipliers { pressure, penalty } = augmentation.accepted();
+            snapshot.put("multipliers", pressure.clone());
+            snapshot.put("multipliers-penalty", vec![*penalty]);
+        }
+        if self.laws.friction.is_some() {
+            snapshot.put("face-stuck", self.acting.stuck.clone());
+            if let Some(shown) = &self.shown {
+                snapshot.put("node-stuck", shown.stuck.clone());
+            }
+        }
+    }
+
+    /// Takes the accepted multipliers and the memory of friction from a snapshot.
+    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
+        if let Some(augmentation) = &mut self.augmentation {
+            let [penalty] = snapshot.numbers("multipliers-penalty")?;
+            let mut pressure = vec![0.0; self.acting.points.len()];
+            snapshot.fill("multipliers", &mut pressure)?;
+            augmentation.restore(Multipliers { pressure, penalty });
+        }
+        if self.laws.friction.is_some() {
+            snapshot.fill("face-stuck", &mut self.acting.stuck)?;
+            if let Some(shown) = &mut self.shown {
+                snapshot.fill("node-stuck", &mut shown.stuck)?;
+            }
+        }
+        Ok(())
     }
 
     /// The residual norm that round-off in the gap alone can leave, N/m: eps alpha times the lengths whose difference
@@ -277,65 +343,53 @@ impl Interface {
             let length = motion.max(placement.approach.abs()).max(height.min(2.0 * placement.approach.abs()));
             (point.weight * length).powi(2)
         };
-        let sum: f64 = self.points.iter().zip(&self.elevations).map(square).sum();
-        f64::EPSILON * self.laws.penalty * sum.sqrt()
+        let sum: f64 = self.acting.points.iter().zip(&self.acting.elevations).map(square).sum();
+        f64::EPSILON * self.penalty() * sum.sqrt()
     }
 
-    /// Evaluates the profile at the points, once per place of the indenter.
-    fn place(&mut self, placement: Placement) -> Result<()> {
-        if self.placed.is_some_and(|placed| placed.sliding == placement.sliding) {
-            return Ok(());
-        }
-        self.placed = None;
-        self.elevations.clear();
-        for point in &self.points {
-            self.elevations.push(self.laws.profile.at(point.x - placement.sliding)?);
-        }
-        self.placed = Some(placement);
-        Ok(())
+    /// alpha, Pa/m
+    fn penalty(&self) -> f64 {
+        self.augmentation.as_ref().map_or(self.laws.penalty, |augmentation| augmentation.multipliers().penalty)
     }
 
-    fn traction(&self, point: &Point, elevation: &Elevation, placement: Placement, surface: &Surface) -> Traction {
-        mpjr::traction(motion(point, elevation, placement, surface), self.laws.penalty, self.laws.friction.as_ref())
+    /// Brings the profile and the multipliers to a state that is to be evaluated.
+    fn attempt(&mut self, placement: Placement) -> Result<()> {
+        if let Some(augmentation) = &mut self.augmentation {
+            augmentation.attempt(placement);
+        }
+        self.acting.place(self.laws.profile.as_ref(), placement)
+    }
+
+    /// The same where the fields are shown.
+    fn place_shown(&mut self, placement: Placement) -> Result<()> {
+        self.attempt(placement)?;
+        self.shown.as_mut().map_or(Ok(()), |shown| shown.place(self.laws.profile.as_ref(), placement))
+    }
+
+    /// The laws evaluated at each of the sites, which have been placed.
+    fn answers<'a>(
+        &'a self,
+        sites: &'a Sites,
+        placement: Placement,
+        surface: &'a Surface,
+    ) -> impl Iterator<Item = Answer<'a>> {
+        let penalty = self.penalty();
+        let multipliers = self.augmentation.as_ref().map(|augmentation| &augmentation.multipliers().pressure);
+        let motions = sites.motions(placement, surface).zip(&sites.elevations).enumerate();
+        motions.map(move |(i, ((point, motion), elevation))| {
+            let resistance = Resistance { penalty, multiplier: multipliers.map_or(0.0, |all| all[i]) };
+            let traction = mpjr::traction(motion, resistance, self.laws.friction.as_ref());
+            Answer { point, elevation, motion, traction }
+        })
     }
 }
 
-/// The relative motion at a point of the face.
-fn motion(point: &Point, elevation: &Elevation, placement: Placement, surface: &Surface) -> Motion {
-    let over = Over {
-        clearance: elevation.height - placement.approach + point.recess,
-        velocity: Vector2::new(placement.sliding_rate, -placement.approach_rate),
-    };
-    Motion::new(&point.frame, over, surface.at(point.nodes, point.shape))
-}
-
-/// Nodal quadrature: half of each edge at either end; the two halves at a node are one point where the edges have one
-/// direction.
-fn lumped_points(face: &Face) -> Vec<Point> {
-    let mut points: Vec<Point> = Vec::with_capacity(face.x.len());
-    // The first point of each node.
-    let mut first = vec![usize::MAX; face.x.len()];
-    for edge in &face.edges {
-        let frame = mpjr::frame(edge.tangent);
-        for (&node, half) in edge.ends.iter().zip(Quadrature::Nodal.points(edge.length)) {
-            match points.get_mut(first[node]) {
-                Some(point) if point.frame == frame => point.weight += half.weight,
-                _ => {
-                    first[node] = first[node].min(points.len());
-                    let (x, recess) = (face.x[node], face.recess[node]);
-                    points.push(Point {
-                        nodes: [node, node],
-                        shape: [1.0, 0.0],
-                        weight: half.weight,
-                        x,
-                        recess,
-                        frame,
-                    });
-                }
-            }
-        }
-    }
-    points
+/// The laws at one point.
+struct Answer<'a> {
+    point: &'a Point,
+    elevation: &'a Elevation,
+    motion: Motion,
+    traction: Traction,
 }
 
 #[cfg(test)]

@@ -13,6 +13,8 @@ pub struct Placement {
     pub sliding_rate: f64,
     /// (D(t) - D(t - dt)) / dt, m/s.
     pub approach_rate: f64,
+    /// The length of the step, s; 0 at an accepted state, whose step is over.
+    pub dt: f64,
 }
 
 /// Tangential motion of one phase, relative to where the phase found the indenter.
@@ -74,7 +76,7 @@ impl Phase {
         let approach_rate = (to - from) / self.duration;
         match self.motion {
             Motion::Velocity(v) => {
-                Placement { approach, sliding: self.sliding + v * local, sliding_rate: v, approach_rate }
+                Placement { approach, sliding: self.sliding + v * local, sliding_rate: v, approach_rate, dt }
             }
             Motion::Sinusoid { amplitude, cycles } => {
                 let angular = 2.0 * PI * cycles / self.duration;
@@ -86,6 +88,7 @@ impl Phase {
                     sliding: self.sliding + amplitude * (angular * local).sin(),
                     sliding_rate: amplitude * 2.0 * middle * half.sin() / dt,
                     approach_rate,
+                    dt,
                 }
             }
         }

@@ -61,6 +61,7 @@ pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
         contact_fraction: totals.contact_fraction,
         stick_fraction: totals.stick_fraction,
         max_penetration: totals.max_penetration,
+        stuck_slip: totals.stuck_slip,
         traction_oscillation: totals.traction_oscillation,
         newton_iterations: report.newton,
         ..HistoryRow::default()

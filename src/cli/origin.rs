@@ -63,11 +63,12 @@ impl Origin<'_> {
         if phases.get(position.phase).and_then(|phase| phase.steps.get(position.target)).is_none() {
             return Err(Error::Usage(format!("{}: its checkpoint is beyond the loading history", file.display())));
         }
-        let [steps, pieces, newton, planned_steps] = snapshot.numbers("counts")?.map(|count: f64| count as usize);
+        let [steps, pieces, newton, augmentations, planned_steps] =
+            snapshot.numbers("counts")?.map(|count: f64| count as usize);
         let [history, interface, bulk] = snapshot.numbers("rows")?.map(|count: f64| count as usize);
         Ok(Some(Begun {
             position,
-            counts: Counts { steps, pieces, newton, ..Counts::default() },
+            counts: Counts { steps, pieces, newton, augmentations, ..Counts::default() },
             planned_steps,
             rows: Rows { history, interface, bulk },
             started,
@@ -94,8 +95,8 @@ fn stored(results: &Path) -> Result<(Snapshot, String)> {
 
 /// Adds what [`Begun`] holds besides the state of the problem.
 pub fn save_counts(snapshot: &mut Snapshot, counts: Counts, planned_steps: usize) {
-    let Counts { steps, pieces, newton, .. } = counts;
-    snapshot.put("counts", [steps, pieces, newton, planned_steps].map(|count| count as f64).to_vec());
+    let Counts { steps, pieces, newton, augmentations, .. } = counts;
+    snapshot.put("counts", [steps, pieces, newton, augmentations, planned_steps].map(|count| count as f64).to_vec());
 }
 
 /// Adds the rows of the result file that count.

@@ -7,7 +7,7 @@ use super::material;
 use crate::composition::{self, Form, Outline, Stretch};
 use crate::output::{HistoryRow, Status};
 use crate::petsc;
-use crate::scene::{Friction, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
+use crate::scene::{Friction, Method, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
 use crate::solve::Counts;
 
 /// What is modelled and what is not: (modelled, not modelled).
@@ -33,14 +33,23 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
         Some(Friction::CoulombTanh { coefficient, regularisation }) => {
             yes.push(format!("friction: f = {coefficient}, regularised by tanh over {regularisation} m/s"));
         }
+        Some(Friction::CoulombElasticSlip { coefficient, elastic_slip }) => {
+            yes.push(format!("friction: f = {coefficient}, sticking up to an elastic slip of {elastic_slip} m"));
+        }
         None => no.push("friction (symmetric solver)".to_owned()),
     }
     let softer = scene.layer().map_or_else(String::new, |layer| {
         let added = added_compliance(scene.contact.penalty, layer, &scene.materials);
         format!(" ({added:.2e} of the compliance to the wave the layer is stiffest to)")
     });
+    let method = match scene.contact.method {
+        Method::Penalty => String::new(),
+        Method::Augmented { augmentation_tolerance } => {
+            format!("augmented Lagrangian up to {augmentation_tolerance} of the displacement, from a ")
+        }
+    };
     yes.push(format!(
-        "contact: penalty {:.3e} Pa/m{softer}, {} quadrature",
+        "contact: {method}penalty of {:.3e} Pa/m{softer}, {} quadrature",
         scene.contact.penalty,
         match scene.contact.quadrature {
             Quadrature::Nodal => "nodal",
@@ -149,10 +158,15 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     );
     let _ = writeln!(
         text,
-        "{:<15}{:.4} of the face, {:.4} of it sticking; penetration {:.1e} m",
-        "final contact:", last.contact_fraction, last.stick_fraction, last.max_penetration
+        "{:<15}{:.4} of the face, {:.4} of it sticking; penetration {:.1e} m, slip while sticking {:.1e} m",
+        "final contact:", last.contact_fraction, last.stick_fraction, last.max_penetration, last.stuck_slip
     );
-    let _ = writeln!(text, "{:<15}{} steps, {} Newton iterations{pieces}", "work:", counts.steps, counts.newton);
+    let augmented = match counts.augmentations {
+        0 => String::new(),
+        again => format!(", {again} augmentations"),
+    };
+    let work = format!("{} steps{pieces}{augmented}, {} Newton iterations", counts.steps, counts.newton);
+    let _ = writeln!(text, "{:<15}{work}", "work:");
     let _ = writeln!(
         text,
         "{:<15}{} on {ranks} rank(s): set-up {}, assembly {},\n{:<15}linear solver {}, output {}",

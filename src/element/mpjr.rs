@@ -10,19 +10,19 @@
 //! g*_n = c n_z - u.n                   Eq. (2), corrected normal gap
 //! p    = -alpha g*_n where g*_n < 0    Eq. (3), p >= 0 in compression
 //! w    = (v - du/dt).t                 slip rate; v = (ds/dt, -dD/dt), the indenter's velocity
-//! q    = friction law of (p, w)        Eq. (4), traction on the layer along t
+//! q    = friction law of p and w       Eq. (4), traction on the layer along t
 //! R_a  = integral of N_a (-q t + p n)  Eq. (6), internal minus external force on the lower nodes a = 1, 2
 //! ```
 //!
 //! On a flat face t = x, n = z, z = z_top. On a curved one the gap is the projection of the vertical clearance on the
 //! local normal, which is the distance to second order in the slopes of face and profile.
 //!
-//! Ours rather than the paper's: the upper nodes are eliminated, the elevation of a curved face enters the gap, and the
-//! quadrature may be nodal.
+//! Ours rather than the paper's: the upper nodes are eliminated, the elevation of a curved face enters the gap, the
+//! quadrature may be nodal, and there may be a multiplier: p = lambda - alpha g*_n where that is positive.
 
 use nalgebra::{Matrix2, Vector2};
 
-use crate::friction::Friction;
+use crate::friction::{Friction, Shear, Slip};
 
 /// One integration point: where the profile is evaluated and what it weighs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,8 +66,10 @@ pub fn frame(tangent: Vector2<f64>) -> Frame {
 pub struct Over {
     /// Vertical clearance c over the undeformed face, m.
     pub clearance: f64,
-    /// (ds/dt, -dD/dt), m/s.
+    /// (ds/dt, -dD/dt) over the step, m/s.
     pub velocity: Vector2<f64>,
+    /// The length of the step, s; 0 where it is over.
+    pub dt: f64,
 }
 
 /// The layer at one point of the face, in (x, z).
@@ -86,17 +88,32 @@ pub struct Motion {
     pub clearance: f64,
     /// u.n, m
     pub normal: f64,
-    /// Slip rate w, m/s.
-    pub slip_rate: f64,
+    /// At the slip rate w.
+    pub slip: Slip,
 }
 
 impl Motion {
-    /// The relative motion in the frame, Eq. (2).
-    pub fn new(frame: &Frame, over: Over, under: Under) -> Self {
+    /// The relative motion in the frame, Eq. (2), of a point that had slipped by `stuck` (m) while it was to stick.
+    pub fn new(frame: &Frame, over: Over, under: Under, stuck: f64) -> Self {
         let displacement = frame * under.displacement;
-        let slip_rate = frame * (over.velocity - under.rate);
-        Self { clearance: over.clearance * frame[(1, 1)], normal: displacement.y, slip_rate: slip_rate.x }
+        let rate = (frame * (over.velocity - under.rate)).x;
+        let slip = Slip { rate, dt: over.dt, stuck };
+        Self { clearance: over.clearance * frame[(1, 1)], normal: displacement.y, slip }
     }
+
+    /// How far the indenter is in the layer, m; negative where there is a gap.
+    pub fn penetration(&self) -> f64 {
+        self.normal - self.clearance
+    }
+}
+
+/// What a point resists penetration with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Resistance {
+    /// Penalty alpha, Pa/m.
+    pub penalty: f64,
+    /// Multiplier lambda >= 0, Pa; 0 but for the augmented Lagrangian.
+    pub multiplier: f64,
 }
 
 /// Tractions at one point and their derivatives.
@@ -104,62 +121,62 @@ impl Motion {
 pub struct Traction {
     /// p, Pa, positive in compression.
     pub pressure: f64,
-    /// q, Pa, on the layer, positive along t.
-    pub shear: f64,
+    /// q and what goes with it; q on the layer, positive along t.
+    pub shear: Shear,
     /// dp/d(u.n), Pa/m
     pub pressure_normal: f64,
-    /// dq/d(u.n), Pa/m
-    pub shear_normal: f64,
-    /// dq/dw, Pa s/m
-    pub shear_rate: f64,
 }
 
 /// The penalty and friction laws at one point, Eqs. (3) and (4).
-pub fn traction(motion: Motion, penalty: f64, friction: Option<&Friction>) -> Traction {
-    let penetration = motion.normal - motion.clearance;
-    if penetration <= 0.0 {
+pub fn traction(motion: Motion, resistance: Resistance, friction: Option<&Friction>) -> Traction {
+    let Resistance { penalty, multiplier } = resistance;
+    let pressure = multiplier + penalty * motion.penetration();
+    if pressure <= 0.0 {
         return Traction::default();
     }
-    let pressure = penalty * penetration;
-    let Some(law) = friction else {
-        return Traction { pressure, pressure_normal: penalty, ..Traction::default() };
-    };
-    let answer = law.shear(pressure, motion.slip_rate);
-    Traction {
-        pressure,
-        shear: answer.shear,
-        pressure_normal: penalty,
-        shear_normal: answer.by_pressure * penalty,
-        shear_rate: answer.by_rate,
-    }
+    let shear = friction.map_or(Shear::default(), |law| law.shear(pressure, motion.slip));
+    Traction { pressure, shear, pressure_normal: penalty }
 }
 
 impl Traction {
     /// Internal minus external force per unit length, -q t + p n, as (t, n), Pa.
     pub fn residual(&self) -> Vector2<f64> {
-        Vector2::new(-self.shear, self.pressure)
+        Vector2::new(-self.shear.shear, self.pressure)
     }
 
     /// d(residual)/du in (t, n), Pa/m, when du/dt moves with u at `shift` = 1/dt, 1/s. Not symmetric under friction.
     pub fn tangent(&self, shift: f64) -> Matrix2<f64> {
-        Matrix2::new(self.shear_rate * shift, -self.shear_normal, 0.0, self.pressure_normal)
+        let Self { shear, pressure_normal, .. } = self;
+        Matrix2::new(shear.by_rate * shift, -shear.by_pressure * pressure_normal, 0.0, *pressure_normal)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::friction::{CoulombTanh, ElasticSlip};
 
-    /// The tangent against central differences, with and without friction, sticking and slipping, in and out of contact.
+    /// The tangent against central differences, without friction and with each law, sticking and slipping, in and out of
+    /// contact, with and without a multiplier.
     #[test]
     fn tangent_is_the_derivative_of_the_residual() {
-        let friction = Friction::coulomb_tanh(0.3, 1e-3);
-        let (penalty, dt, drive, clearance) = (1e6, 0.1, 2e-3, -1e-4);
-        for law in [None, Some(&friction)] {
-            for (ut, un) in [(1e-5, 2e-5), (1.9e-4, -3e-5), (4e-4, 1e-4), (-2e-4, 5e-5), (1e-4, -2e-4)] {
+        let tanh = Friction::CoulombTanh(CoulombTanh { coefficient: 0.3, regularisation: 1e-3 });
+        let elastic = Friction::ElasticSlip(ElasticSlip { coefficient: 0.3, elastic_slip: 1e-4 });
+        let (dt, drive, clearance, stuck) = (0.1, 2e-3, -1e-4, 4e-5);
+        for law in [None, Some(&tanh), Some(&elastic)] {
+            for (ut, un, multiplier) in [
+                (1e-5, 2e-5, 0.0),
+                (1.9e-4, -3e-5, 7.0),
+                (2.3e-4, -3e-5, 0.0),
+                (4e-4, 1e-4, 3.0),
+                (-2e-4, 5e-5, 0.0),
+                (1e-4, -2e-4, 0.0),
+                (2.3e-4, -2e-4, 200.0),
+            ] {
+                let resistance = Resistance { penalty: 1e6, multiplier };
                 let at = |u: Vector2<f64>| {
-                    let motion = Motion { clearance, normal: u.y, slip_rate: drive - u.x / dt };
-                    traction(motion, penalty, law)
+                    let slip = Slip { rate: drive - u.x / dt, dt, stuck };
+                    traction(Motion { clearance, normal: u.y, slip }, resistance, law)
                 };
                 let u = Vector2::new(ut, un);
                 let step = 1e-10;

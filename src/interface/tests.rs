@@ -2,18 +2,24 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
+use crate::friction::{CoulombTanh, ElasticSlip};
 use crate::mesh::{Layer, Sides};
 use crate::profile::Harmonic;
 
 fn interface(quadrature: Quadrature, sides: Sides) -> Interface {
+    let friction = Friction::CoulombTanh(CoulombTanh { coefficient: 0.3, regularisation: 0.02 });
+    with_law(quadrature, sides, friction)
+}
+
+fn with_law(quadrature: Quadrature, sides: Sides, friction: Friction) -> Interface {
     let layer = Layer { width: 1.0, depth: 1.0, cells: [8, 1], grading: 1.0, sides };
     let profile = Box::new(Harmonic { amplitude: 0.01, wavelength: 1.0 });
-    let friction = Some(Friction::coulomb_tanh(0.3, 0.02));
-    Interface::new(layer.mesh().face, Laws { profile, penalty: 50.0, friction }, quadrature)
+    let laws = Laws { profile, penalty: 50.0, augmentation: None, friction: Some(friction) };
+    Interface::new(layer.mesh().face, laws, quadrature)
 }
 
 fn placement() -> Placement {
-    Placement { approach: 0.012, sliding: 0.13, sliding_rate: 0.05, approach_rate: 0.02 }
+    Placement { approach: 0.012, sliding: 0.13, sliding_rate: 0.05, approach_rate: 0.02, dt: 0.1 }
 }
 
 /// A wavy surface whose rates follow its displacements at `shift`.
@@ -43,7 +49,7 @@ fn a_curved_face_is_consistent() {
     for quadrature in [Quadrature::Nodal, Quadrature::Gauss] {
         let laws = interface(quadrature, Sides::Free).laws;
         let mut interface = Interface::new(arch(), laws, quadrature);
-        assert_eq!(interface.points.len(), 16);
+        assert_eq!(interface.acting.points.len(), 16);
         let placement = Placement { approach: 0.1, ..placement() };
         assert_tangent(&mut interface, placement);
         let surface = surface(9, 0.0, (0, 0.0));
@@ -65,12 +71,12 @@ fn elevation_of_the_face_enters_the_gap() {
             Ok(Elevation { height: 0.0, slope: 0.0 })
         }
     }
-    let laws = Laws { profile: Box::new(Flat), penalty: 50.0, friction: None };
+    let laws = Laws { profile: Box::new(Flat), penalty: 50.0, augmentation: None, friction: None };
     let mut face = arch();
     let frames: Vec<f64> = face.edges.iter().map(|edge| edge.tangent.x).collect();
     face.recess[0] = 0.2;
     let recess = face.recess.clone();
-    let interface = Interface::new(face, laws, Quadrature::Nodal);
+    let mut interface = Interface::new(face, laws, Quadrature::Nodal);
     let fields = interface.fields(Placement { approach: 0.01, ..placement() }, &Surface::at_rest(9)).unwrap();
     assert!((fields.gap[0] - 0.19 * frames[0]).abs() < 1e-15);
     assert!((fields.gap[8] - (recess[8] - 0.01) * frames[7]).abs() < 1e-15);
@@ -118,7 +124,7 @@ fn assert_tangent(interface: &mut Interface, placement: Placement) {
 fn totals_integrate_the_tractions() {
     for quadrature in [Quadrature::Nodal, Quadrature::Gauss] {
         let mut interface = interface(quadrature, Sides::Periodic);
-        let place = Placement { approach: 0.1, sliding: 0.0, sliding_rate: 1e3, approach_rate: 0.0 };
+        let place = Placement { approach: 0.1, sliding: 0.0, sliding_rate: 1e3, approach_rate: 0.0, dt: 0.1 };
         let totals = interface.totals(place, &Surface::at_rest(8)).unwrap();
         // p = alpha (D - g0 (1 - cos)), whose mean is alpha (D - g0).
         assert!((totals.normal_force - 50.0 * 0.09).abs() < 1e-13);

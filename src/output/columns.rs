@@ -24,6 +24,8 @@ pub struct HistoryRow {
     pub stick_fraction: f64,
     /// Largest penetration, m, positive.
     pub max_penetration: f64,
+    /// Largest slip of a sticking point while it was to stick, m.
+    pub stuck_slip: f64,
     /// How much the tractions oscillate from node to node; 1 = nothing but a checkerboard.
     pub traction_oscillation: f64,
     /// Newton iterations that the step took.
@@ -108,6 +110,7 @@ pub(super) const HISTORY: &[Column] = &[
     real("contact_fraction", "1", "share of the contact face in contact", |r| r.contact_fraction),
     real("stick_fraction", "1", "share of the contact that sticks", |r| r.stick_fraction),
     real("max_penetration", "m", "largest penetration", |r| r.max_penetration),
+    real("stuck_slip", "m", "largest slip of a point since it began to stick, which the regularisation lets it do", |r| r.stuck_slip),
     real("traction_oscillation", "1", "node-to-node oscillation of the tractions over their rms, 1 = a checkerboard", |r| r.traction_oscillation),
     count("newton_iterations", "Newton iterations of the step", |r| r.newton_iterations),
     real("time", "s", "time", |r| r.time),

@@ -188,6 +188,22 @@ pub struct Contact {
     pub penalty: f64,
     /// Where the interface element evaluates the laws.
     pub quadrature: Quadrature,
+    /// What the penalty is for.
+    #[serde(flatten)]
+    pub method: Method,
+}
+
+/// What the penalty is for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(tag = "method", rename_all = "snake_case")]
+pub enum Method {
+    /// It is what resists penetration.
+    Penalty,
+    /// It leads the augmented Lagrangian to contact without penetration; nodal quadrature only.
+    Augmented {
+        /// The penetration that is left, relative to the displacement of the face; in (0, 1).
+        augmentation_tolerance: f64,
+    },
 }
 
 /// Points of an interface element.
@@ -211,6 +227,23 @@ pub enum Friction {
         /// m/s
         regularisation: f64,
     },
+    /// q = coefficient p e/elastic_slip, e the elastic part of the slip, at most elastic_slip either way; coefficient
+    /// >= 0, elastic_slip > 0.
+    CoulombElasticSlip {
+        /// -
+        coefficient: f64,
+        /// m
+        elastic_slip: f64,
+    },
+}
+
+impl Friction {
+    /// The coefficient of friction.
+    pub fn coefficient(&self) -> f64 {
+        match *self {
+            Self::CoulombTanh { coefficient, .. } | Self::CoulombElasticSlip { coefficient, .. } => coefficient,
+        }
+    }
 }
 
 /// One phase of the loading history.

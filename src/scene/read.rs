@@ -12,7 +12,7 @@ use toml::Table;
 
 use super::keys::{self, Quantity, Section};
 use super::{
-    Body, Contact, Friction, Load, Material, Output, Quadrature, Scene, Solver, Source, Strategy, When, checks,
+    Body, Contact, Friction, Load, Material, Method, Output, Quadrature, Scene, Solver, Source, Strategy, When, checks,
     include, overrides, penalty_for,
 };
 use crate::error::{Error, Result};
@@ -96,12 +96,28 @@ const COUNT: std::ops::RangeInclusive<usize> = 1..=usize::MAX;
 fn contact(section: &Section, body: &Body, materials: &[Material]) -> Result<Contact> {
     const QUADRATURES: [(&str, Quadrature); 2] = [("nodal", Quadrature::Nodal), ("gauss", Quadrature::Gauss)];
 
-    section.later(&[("method", "remove it: contact is enforced by penalty")])?;
-    section.only(&["penalty", "tolerance", "quadrature"])?;
-    Ok(Contact {
-        penalty: penalty(section, body, materials)?,
-        quadrature: section.optional_choice("quadrature", &QUADRATURES, &[])?.unwrap_or(Quadrature::Nodal),
-    })
+    section.only(&["penalty", "tolerance", "quadrature", "method", "augmentation_tolerance"])?;
+    let quadrature = section.optional_choice("quadrature", &QUADRATURES, &[])?.unwrap_or(Quadrature::Nodal);
+    Ok(Contact { penalty: penalty(section, body, materials)?, quadrature, method: method(section, quadrature)? })
+}
+
+/// How the penalty is used.
+fn method(section: &Section, quadrature: Quadrature) -> Result<Method> {
+    const TOLERANCE: Quantity =
+        Quantity { what: "a relative tolerance above 0 and below 1", accepts: |value| value > 0.0 && value < 1.0 };
+
+    let augmented =
+        section.optional_choice("method", &[("penalty", false), ("augmented", true)], &[])?.unwrap_or(false);
+    let tolerance = section.optional_number("augmentation_tolerance", TOLERANCE)?;
+    match (augmented, tolerance) {
+        (false, None) => Ok(Method::Penalty),
+        (false, Some(_)) => Err(section.error("augmentation_tolerance", "is for method = \"augmented\"")),
+        (true, _) if quadrature == Quadrature::Gauss => {
+            let reason = "\"augmented\" cannot hold two points to an edge whose displacement is linear; use \"nodal\" quadrature";
+            Err(section.error("method", reason))
+        }
+        (true, tolerance) => Ok(Method::Augmented { augmentation_tolerance: tolerance.unwrap_or(1e-5) }),
+    }
 }
 
 /// The penalty, given as itself or as the compliance that it may add.
@@ -133,18 +149,19 @@ fn penalty(section: &Section, body: &Body, materials: &[Material]) -> Result<f64
 fn friction(section: &Section) -> Result<Friction> {
     const COEFFICIENT: Quantity = Quantity { what: "a friction coefficient, at least 0", accepts: |f| f >= 0.0 };
     const REGULARISATION: Quantity = Quantity::positive("a positive slip rate in m/s");
-
-    const KEYS: [&str; 3] = ["law", "coefficient", "regularisation"];
+    const ELASTIC_SLIP: Quantity = Quantity::positive("a positive length in m");
 
     // The law decides which keys there are; where it is absent, perhaps it is misspelt.
     if !section.has("law") {
-        section.only(&KEYS)?;
+        section.only(&["law", "coefficient", "regularisation", "elastic_slip"])?;
     }
-    section.choice("law", &[("coulomb_tanh", ())], &["coulomb_elastic_slip"])?;
-    section.only(&KEYS)?;
-    Ok(Friction::CoulombTanh {
-        coefficient: section.number("coefficient", COEFFICIENT)?,
-        regularisation: section.number("regularisation", REGULARISATION)?,
+    let by_slip = section.choice("law", &[("coulomb_tanh", false), ("coulomb_elastic_slip", true)], &[])?;
+    section.only(&["law", "coefficient", if by_slip { "elastic_slip" } else { "regularisation" }])?;
+    let coefficient = section.number("coefficient", COEFFICIENT)?;
+    Ok(if by_slip {
+        Friction::CoulombElasticSlip { coefficient, elastic_slip: section.number("elastic_slip", ELASTIC_SLIP)? }
+    } else {
+        Friction::CoulombTanh { coefficient, regularisation: section.number("regularisation", REGULARISATION)? }
     })
 }
 

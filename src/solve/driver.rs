@@ -31,7 +31,20 @@ pub struct Driver<'a> {
     dt: Option<f64>,
     /// Cuts of the planned step so far.
     cuts: usize,
+    /// Newton iterations of the step so far.
+    newton: usize,
+    /// Only where steps may have to be solved again.
+    rounds: Option<Rounds>,
     counts: Counts,
+}
+
+/// The rounds of a step that is solved until the problem augments it no more.
+struct Rounds {
+    /// The accepted solution, from which each round begins.
+    start: Vector,
+    /// What the last round came to, and how long the step was, s; none before the first.
+    last: Vector,
+    dt: Option<f64>,
 }
 
 /// Where a run stands between two steps.
@@ -71,6 +84,8 @@ pub struct Counts {
     pub pieces: usize,
     /// Newton iterations, those of rejected attempts included.
     pub newton: usize,
+    /// How often a step was solved again with other multipliers.
+    pub augmentations: usize,
     /// Residuals and tangents.
     pub assembly: Duration,
     /// What the observer took.
@@ -82,7 +97,19 @@ pub struct Counts {
 impl<'a> Driver<'a> {
     /// A driver at the beginning of the history.
     pub fn new(problem: &'a mut dyn TransientProblem, observer: &'a mut dyn Observer, phases: &'a [Phase]) -> Self {
-        Self { problem, observer, phases, phase: 0, target: 0, now: 0.0, dt: None, cuts: 0, counts: Counts::default() }
+        Self {
+            problem,
+            observer,
+            phases,
+            phase: 0,
+            target: 0,
+            now: 0.0,
+            dt: None,
+            cuts: 0,
+            newton: 0,
+            rounds: None,
+            counts: Counts::default(),
+        }
     }
 
     /// The same driver at a later position, where `counts` were counted before. The problem must have been restored
@@ -101,6 +128,11 @@ impl<'a> Driver<'a> {
         let Some(target) = phase.steps.get(self.target) else { return Ok(()) };
         let first = self.attempt(self.dt.unwrap_or(target.dt));
         self.problem.begin(phase.clone());
+        if self.problem.is_augmented() {
+            let (mut start, last) = (u.like()?, u.like()?);
+            start.copy_from(u)?;
+            self.rounds = Some(Rounds { start, last, dt: None });
+        }
         let begun = Instant::now();
         let outcome = integrator.solve(self, tangent, u, first);
         self.counts.total = begun.elapsed();
@@ -143,6 +175,21 @@ impl<'a> Driver<'a> {
     }
 }
 
+impl Rounds {
+    /// Another round of a step that has come to `u`.
+    fn again(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        self.dt = Some(step.dt);
+        self.last.copy_from(u)?;
+        u.copy_from(&self.start)
+    }
+
+    /// The step is accepted at `u`.
+    fn over(&mut self, u: &Vector) -> Result<()> {
+        self.dt = None;
+        self.start.copy_from(u)
+    }
+}
+
 impl Implicit for Driver<'_> {
     fn residual(&mut self, step: Step, u: &Vector, rate: &Vector, f: &mut Vector) -> Result<()> {
         let begun = Instant::now();
@@ -167,31 +214,48 @@ impl Implicit for Driver<'_> {
     }
 
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
-        self.problem.guess(step, u)
+        match &self.rounds {
+            Some(rounds) if rounds.dt == Some(step.dt) => u.copy_from(&rounds.last),
+            _ => self.problem.guess(step, u),
+        }
+    }
+
+    fn limit(&mut self, step: Step, u: &Vector, decrement: &mut Vector) -> Result<bool> {
+        self.problem.limit(step, u, decrement)
     }
 
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
         self.problem.test(iteration, norm)
     }
 
-    fn accepted(&mut self, accepted: Accepted, u: &Vector) -> Result<Next> {
+    fn accepted(&mut self, accepted: Accepted, u: &mut Vector) -> Result<Next> {
+        self.cuts += accepted.cuts;
+        self.newton += accepted.newton;
+        if let Some(rounds) = &mut self.rounds {
+            if self.problem.augment(accepted.step, u)? {
+                rounds.again(accepted.step, u)?;
+                self.counts.augmentations += 1;
+                return Ok(Next::Step(self.attempt(accepted.step.dt)));
+            }
+            rounds.over(u)?;
+        }
         self.problem.commit(accepted.step, u)?;
+        let newton = std::mem::take(&mut self.newton);
         let phase = self.phase;
         let target = self.phases[phase].steps[self.target];
         self.now = accepted.step.t;
-        self.cuts += accepted.cuts;
         let next = self.next(accepted.step.dt);
         let planned = self.now == target.time;
         self.counts.steps += 1;
         self.counts.pieces += usize::from(!planned);
-        self.counts.newton += accepted.newton;
+        self.counts.newton += newton;
         let report = Report {
             phase,
             time: self.now,
             planned,
             phase_end: self.phase != phase,
             bulk_output: target.bulk_output && planned,
-            newton: accepted.newton,
+            newton,
             counts: self.counts,
             next: match next {
                 Next::Step(Attempt { now, dt, .. }) => {

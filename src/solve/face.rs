@@ -6,7 +6,8 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::Contact;
 use crate::error::{Error, Result};
-use crate::interface::{Interface, Residual, Surface, Tangent};
+use crate::friction::Slip;
+use crate::interface::{Fields, Interface, Residual, Surface, Tangent};
 use crate::loading::{Phase, Placement};
 use crate::petsc::{Gather, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
@@ -95,31 +96,55 @@ impl ContactFace {
         Ok(())
     }
 
-    /// Where Newton's method had better begin than at the accepted displacements: (face node, distance along x, m).
+    /// Where Newton's method had better begin than at the accepted displacements: what to add to them, m, for each node
+    /// of the face. What is behind the face need not be predicted, because it is linear.
     ///
-    /// Nodes that stuck go with the indenter at the slip rate they had, and those on which it turns back at none. From
-    /// the steep side of a regularised law Newton's method lets node after node slip; from the flat side, where the
-    /// accepted displacements are as soon as the indenter moves on, it does not find back. None where the indenter goes
-    /// so far in the step that all will slip anyway: ten times what the drag, f of the pressure, displaces by the
-    /// measure of what the pressure does.
-    pub fn carried(&self, step: Step) -> Result<Vec<(usize, f64)>> {
-        let Self { interface, accepted, free, .. } = self;
-        if !interface.has_friction() {
-            return Ok(Vec::new());
-        }
-        let rate = self.phase()?.placement(step.t, step.dt).sliding_rate;
-        let normal = accepted.surface.displacement.iter().skip(1).step_by(2);
+    /// Within a phase the face goes on as it did, and nodes of which friction expects a slip rate go with the indenter
+    /// at that. Not so where the indenter goes so far in the step that all will slip anyway: ten times what the drag, f
+    /// of the pressure, displaces by the measure of what the pressure does.
+    pub fn prediction(&mut self, step: Step) -> Result<Vec<Vector2<f64>>> {
+        let phase = self.phase()?;
+        // A quarter of the step, against round-off: the one before was half as long or longer.
+        let goes_on = if step.t - 1.25 * step.dt > phase.start { step.dt } else { 0.0 };
+        let drive = phase.placement(step.t, step.dt).sliding_rate;
+        let Self { interface, accepted: State { surface, placement, .. }, free, .. } = self;
+        let mut prediction: Vec<_> =
+            surface.rate.as_chunks().0.iter().map(|&[x, z]| Vector2::new(x, z) * goes_on).collect();
+        let Some(law) = interface.friction().copied() else { return Ok(prediction) };
+        let normal = surface.displacement.iter().skip(1).step_by(2);
         let deepest = normal.fold(0.0, |most: f64, u| most.max(u.abs()));
-        if (rate * step.dt).abs() > 10.0 * interface.largest_drag() * deepest {
+        if (drive * step.dt).abs() > 10.0 * law.coefficient() * deepest {
+            return Ok(prediction);
+        }
+        let Fields { pressure, slip_rate, stuck, .. } = interface.fields(*placement, surface)?;
+        for node in (0..prediction.len()).filter(|&node| pressure[node] > 0.0 && free[node].x > 0.0) {
+            let slip = Slip { rate: slip_rate[node], dt: 0.0, stuck: stuck[node] };
+            if let Some(rate) = law.expected(slip, drive) {
+                prediction[node].x = (drive - rate) * step.dt;
+            }
+        }
+        Ok(prediction)
+    }
+
+    /// What to add to the displacements of nodes of the face, m, that a Newton step takes from `u` to `u` -
+    /// `decrement`, so that friction is not overrun.
+    pub fn limit(&mut self, step: Step, u: &Vector, decrement: &Vector) -> Result<Vec<(usize, Vector2<f64>)>> {
+        if self.interface.friction().is_none() {
             return Ok(Vec::new());
         }
-        let fields = interface.fields(accepted.placement, &accepted.surface)?;
-        let carried = |(node, (&pressure, &slip)): (usize, (&f64, &f64))| {
-            let turns = rate * slip < 0.0;
-            let moves = pressure > 0.0 && free[node].x > 0.0 && (turns || interface.grips(slip));
-            moves.then_some((node, (if turns { rate } else { rate - slip }) * step.dt))
-        };
-        Ok(fields.pressure.iter().zip(&fields.slip_rate).enumerate().filter_map(carried).collect())
+        let (from, less) = (self.gather(u)?, self.gather(decrement)?);
+        let from = self.surface_at(step, from);
+        let to = from.displacement.iter().zip(&less).map(|(u, less)| u - less).collect();
+        let to = self.surface_at(step, to);
+        let placement = self.phase()?.placement(step.t, step.dt);
+        self.interface.limit(placement, [&from, &to])
+    }
+
+    /// The face at given displacements at the end of a step.
+    fn surface_at(&self, step: Step, displacement: Vec<f64>) -> Surface {
+        let accepted = &self.accepted.surface.displacement;
+        let rate = displacement.iter().zip(accepted).map(|(new, old)| (new - old) / step.dt).collect();
+        Surface { displacement, rate }
     }
 
     /// The Euclidean norm of `residual`, N/m.
@@ -164,9 +189,17 @@ impl ContactFace {
         for ((rate, new), old) in surface.rate.iter_mut().zip(&surface.displacement).zip(&before) {
             *rate = (new - old) / step.dt;
         }
-        self.accepted.placement = placement;
+        self.interface.commit(placement, surface)?;
+        self.accepted.placement = Placement { dt: 0.0, ..placement };
         self.accepted.scale = self.trial.scale;
         Ok(())
+    }
+
+    /// Whether a step that was solved by `u` must be solved again, with other multipliers.
+    pub fn augment(&mut self, step: Step, u: &Vector) -> Result<bool> {
+        self.trial.placement = self.phase()?.placement(step.t, step.dt);
+        self.gather.gather(u, &mut self.trial.surface.displacement)?;
+        self.interface.augment(self.trial.placement, &self.trial.surface)
     }
 
     /// Makes `residual` hold at the accepted state.
@@ -179,18 +212,20 @@ impl ContactFace {
 
     /// Adds the accepted state to a snapshot; the displacements are part of the solution.
     pub fn save(&self, snapshot: &mut Snapshot) {
-        let State { surface, placement: Placement { approach, sliding, sliding_rate, approach_rate }, scale } =
-            &self.accepted;
+        let State { surface, placement, scale } = &self.accepted;
+        let Placement { approach, sliding, sliding_rate, approach_rate, dt: _ } = placement;
         snapshot.put("face", vec![*approach, *sliding, *sliding_rate, *approach_rate, *scale]);
         snapshot.put("face-rate", surface.rate.clone());
+        self.interface.save(snapshot);
     }
 
     /// Takes the accepted state, whose solution is `u`, from a snapshot.
     pub fn restore(&mut self, snapshot: &Snapshot, u: &Vector) -> Result<()> {
         let [approach, sliding, sliding_rate, approach_rate, scale] = snapshot.numbers("face")?;
-        self.accepted.placement = Placement { approach, sliding, sliding_rate, approach_rate };
+        self.accepted.placement = Placement { approach, sliding, sliding_rate, approach_rate, dt: 0.0 };
         self.accepted.scale = scale;
         snapshot.fill("face-rate", &mut self.accepted.surface.rate)?;
+        self.interface.restore(snapshot)?;
         self.gather.gather(u, &mut self.accepted.surface.displacement)
     }
 

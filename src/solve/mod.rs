@@ -21,8 +21,9 @@ pub use monolithic::Monolithic;
 
 /// A discretised contact problem in a form that TS and SNES can step.
 ///
-/// Residual and tangent are pure functions of the accepted state and their arguments; [`Self::commit`] is the only
-/// method that moves the accepted state. All ranks call each method together.
+/// Residual and tangent are pure functions of the accepted state and their arguments (and, within a step that is
+/// augmented, of the solutions of its rounds before); [`Self::commit`] is the only method that moves the accepted state.
+/// All ranks call each method together.
 pub trait TransientProblem {
     /// What the following steps are driven by.
     fn begin(&mut self, phase: Phase);
@@ -40,8 +41,15 @@ pub trait TransientProblem {
     }
     /// Improves on `u`, the accepted state, as the point from which Newton's method begins.
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()>;
+    /// Bends a Newton step from `u` to `u` - `decrement`; whether it did.
+    fn limit(&mut self, step: Step, u: &Vector, decrement: &mut Vector) -> Result<bool>;
     /// Judges a Newton iterate by the norm of its residual.
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
+    /// Whether [`Self::augment`] ever asks for more.
+    fn is_augmented(&self) -> bool;
+    /// Whether a step that was solved by `u` must be solved again before it is accepted, because the problem is not the
+    /// same any more: its multipliers have moved.
+    fn augment(&mut self, step: Step, u: &Vector) -> Result<bool>;
     /// Takes the accepted state to the end of an accepted step.
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()>;
     /// Adds the accepted state, with the solution `u`, to a snapshot: all that later steps depend on, down to the last

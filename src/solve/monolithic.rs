@@ -95,19 +95,40 @@ impl TransientProblem for Monolithic {
     }
 
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
-        let carried = self.face.carried(step)?;
+        let prediction = self.face.prediction(step)?;
         let mut values = u.view_mut()?;
-        for (node, distance) in carried {
-            if let (_, Some(row)) = self.rows[node] {
-                values[row] += distance;
+        for (increment, &(_, local)) in prediction.iter().zip(&self.rows) {
+            if let Some(row) = local {
+                values[row] += increment.x;
+                values[row + 1] += increment.y;
             }
         }
         Ok(())
     }
 
+    fn limit(&mut self, step: Step, u: &Vector, decrement: &mut Vector) -> Result<bool> {
+        let limits = self.face.limit(step, u, decrement)?;
+        let mut values = decrement.view_mut()?;
+        for (node, increment) in &limits {
+            if let (_, Some(row)) = self.rows[*node] {
+                values[row] -= increment.x;
+                values[row + 1] -= increment.y;
+            }
+        }
+        Ok(!limits.is_empty())
+    }
+
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
         let noise = self.face.noise();
         self.face.test(iteration, norm, self.tolerance, noise)
+    }
+
+    fn is_augmented(&self) -> bool {
+        self.face.interface().is_augmented()
+    }
+
+    fn augment(&mut self, step: Step, u: &Vector) -> Result<bool> {
+        self.face.augment(step, u)
     }
 
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {

@@ -3,14 +3,12 @@
 use super::Run;
 use crate::error::Result;
 use crate::plot::{Axis, Curve, Figure, PALETTE, REFERENCE, Sheet, Stroke};
+use crate::scene::Friction;
 
 /// Normal, tangential and hysteretic force; dotted lines where a phase ends.
 pub fn sheet(run: &Run) -> Result<Sheet> {
     let history = &run.history;
-    let friction = match &run.scene.friction {
-        Some(crate::scene::Friction::CoulombTanh { coefficient, .. }) => *coefficient,
-        None => 0.0,
-    };
+    let friction = run.scene.friction.as_ref().map_or(0.0, Friction::coefficient);
     let envelope: Vec<f64> = history.normal.iter().map(|normal| friction * normal).collect();
     let mut tangential = vec![force(run, "Q", &history.tangential, 1)];
     if friction > 0.0 {

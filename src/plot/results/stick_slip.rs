@@ -12,8 +12,8 @@ const COLUMNS: usize = 900;
 /// The approach, the transition to sliding, and the whole history.
 pub fn sheet(run: &Run) -> Result<Sheet> {
     let interface = run.interface()?;
-    let state =
-        State { run, pressure: run.results.interface("pressure")?, slip_rate: run.results.interface("slip_rate")? };
+    let field = |name| run.results.interface(name);
+    let state = State { run, pressure: field("pressure")?, shear: field("shear")?, slip_rate: field("slip_rate")? };
     let t0 = run.approach_time();
     let end = interface.time[interface.time.len() - 1];
     let mut panels = Vec::new();
@@ -38,18 +38,25 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
 struct State<'a> {
     run: &'a Run,
     pressure: Field,
+    shear: Field,
     slip_rate: Field,
 }
 
 impl State<'_> {
     /// 0 no contact, 1 sticks, 2 slips: as `stick_fraction` counts them.
     fn class(&self, frame: usize, node: usize) -> f64 {
-        let (pressure, rate) = (self.pressure.row(frame)[node], self.slip_rate.row(frame)[node]);
-        match &self.run.scene.friction {
-            _ if pressure <= 0.0 => 0.0,
-            Some(Friction::CoulombTanh { regularisation, .. }) if rate.abs() < *regularisation => 1.0,
-            _ => 2.0,
-        }
+        let [pressure, shear, rate] =
+            [&self.pressure, &self.shear, &self.slip_rate].map(|field| field.row(frame)[node]);
+        let sticks = match &self.run.scene.friction {
+            _ if pressure <= 0.0 => return 0.0,
+            Some(Friction::CoulombTanh { regularisation, .. }) => rate.abs() < *regularisation,
+            // Up to round-off.
+            Some(Friction::CoulombElasticSlip { coefficient, .. }) => {
+                shear.abs() < (1.0 - 1e-12) * coefficient * pressure
+            }
+            None => false,
+        };
+        if sticks { 1.0 } else { 2.0 }
     }
 }
 

@@ -119,10 +119,7 @@ fn tangential(
     stage: &Stage,
     title: &str,
 ) -> Figure {
-    let coefficient = match &run.scene.friction {
-        Some(Friction::CoulombTanh { coefficient, .. }) => *coefficient,
-        None => 0.0,
-    };
+    let coefficient = run.scene.friction.as_ref().map_or(0.0, Friction::coefficient);
     let colours = Ramp::lines(stage.frames.len());
     let mut curves = Vec::new();
     let bound = |frame: usize, sign: f64, colour, label: &str| {

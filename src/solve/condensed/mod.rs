@@ -181,17 +181,37 @@ impl<B: Backing> TransientProblem for Condensed<B> {
     }
 
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
-        let carried = self.face.carried(step)?;
-        let mut values = u.view_mut()?;
-        if !values.is_empty() {
-            carried.into_iter().for_each(|(node, distance)| values[2 * node] += distance);
+        let prediction = self.face.prediction(step)?;
+        // Only rank 0 has values.
+        for (value, increment) in u.view_mut()?.iter_mut().zip(prediction.iter().flatten()) {
+            *value += increment;
         }
         Ok(())
+    }
+
+    fn limit(&mut self, step: Step, u: &Vector, decrement: &mut Vector) -> Result<bool> {
+        let limits = self.face.limit(step, u, decrement)?;
+        let mut values = decrement.view_mut()?;
+        for (node, increment) in &limits {
+            // Only rank 0 has values.
+            if let Some([x, z]) = values.as_chunks_mut().0.get_mut(*node) {
+                (*x, *z) = (*x - increment.x, *z - increment.y);
+            }
+        }
+        Ok(!limits.is_empty())
     }
 
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
         let noise = self.backing.softness() * self.face.noise() + 8.0 * f64::EPSILON * self.face.trial_norm();
         self.face.test(iteration, norm, self.tolerance, noise)
+    }
+
+    fn is_augmented(&self) -> bool {
+        self.face.interface().is_augmented()
+    }
+
+    fn augment(&mut self, step: Step, u: &Vector) -> Result<bool> {
+        self.face.augment(step, u)
     }
 
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {
