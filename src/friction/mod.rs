@@ -1,5 +1,7 @@
 //! Friction laws: pressure and slip in, shear traction and its derivatives out.
 
+use nalgebra::Vector2;
+
 mod coulomb_tanh;
 mod elastic_slip;
 
@@ -24,6 +26,8 @@ pub struct Slip {
     pub dt: f64,
     /// What [`Shear::stuck`] was at the beginning of the step, m.
     pub stuck: f64,
+    /// A regularisation sharper than this, m/s, is beyond the digits of the slip rate, and this takes its place.
+    pub resolution: f64,
 }
 
 /// The shear traction, its derivatives, and what the law remembers.
@@ -66,6 +70,23 @@ impl Friction {
             Self::CoulombTanh(law) => law.expected(slip, drive),
             Self::ElasticSlip(law) => law.expected(slip, drive),
         }
+    }
+
+    /// The slip rate, m/s, over which the traction turns from one way to the other in a step of `dt`, s.
+    pub fn sharpness(&self, dt: f64) -> f64 {
+        match self {
+            Self::CoulombTanh(law) => law.regularisation,
+            Self::ElasticSlip(law) => law.elastic_slip / dt,
+        }
+    }
+
+    /// The slip rate, m/s, at which the traction is q under the pressure p, given as (q, p), Pa; none where it slips.
+    pub fn rate(&self, traction: Vector2<f64>, slip: Slip) -> Option<f64> {
+        let share = traction.x / (self.coefficient() * traction.y);
+        (share.abs() < 1.0 - 1e-9).then(|| match self {
+            Self::CoulombTanh(law) => law.sharpness(slip) * share.atanh(),
+            Self::ElasticSlip(law) => (share * law.elastic_slip - slip.stuck) / slip.dt,
+        })
     }
 
     /// The slip rate, m/s, that a Newton step had better take a point to which it takes from one slip to another; none

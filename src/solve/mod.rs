@@ -15,6 +15,7 @@ use crate::snapshot::Snapshot;
 pub use body::{Body, Moduli, Region, Solid};
 pub use condensed::{
     Backing, Compliance, Condensed, Following, Interior, LARGE_FACE, PeriodicColumn, Relaxation, Remembering, Source,
+    Station,
 };
 pub use driver::{Counts, Driver, MAX_NEWTON, Position};
 pub use monolithic::Monolithic;

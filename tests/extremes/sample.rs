@@ -105,8 +105,14 @@ impl Sample {
         let profile = match self.profile {
             "harmonic" => format!("profile = \"harmonic\"\namplitude = {amplitude:e}\nwavelength = {length:e}"),
             // The same curvature; at the ends of the width h is of the order of the amplitude.
-            "parabola" => format!("profile = \"parabola\"\nradius = {:e}\ncentre = {:e}", length * length / amplitude, 0.5 * length),
-            "circle" => format!("profile = \"circle\"\nradius = {:e}\ncentre = {:e}", length * length / amplitude, 0.5 * length),
+            "parabola" => format!(
+                "profile = \"parabola\"\nradius = {:e}\ncentre = {:e}",
+                length * length / amplitude,
+                0.5 * length
+            ),
+            "circle" => {
+                format!("profile = \"circle\"\nradius = {:e}\ncentre = {:e}", length * length / amplitude, 0.5 * length)
+            }
             _ => format!("profile = \"wedge\"\nslope = {:e}\ncentre = {:e}", amplitude / length, 0.5 * length),
         };
         let arms: Vec<String> = (0..self.arms)

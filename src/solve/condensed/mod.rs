@@ -16,6 +16,7 @@ mod following;
 mod interior;
 mod newton;
 mod remembering;
+mod start;
 
 use super::face::ContactFace;
 use super::{BulkFields, Contact, TransientProblem};
@@ -29,6 +30,7 @@ pub use compliance::Compliance;
 pub use following::{Following, Relaxation};
 pub use interior::Interior;
 pub use remembering::{PeriodicColumn, Remembering, Source};
+pub use start::Station;
 
 use newton::{Factor, SparseColumns};
 
@@ -127,6 +129,26 @@ impl<B: Backing> Condensed<B> {
     }
 }
 
+impl<B: Backing> Condensed<B> {
+    /// Makes `u`, the accepted state, a start at which the tractions meet the laws.
+    fn start(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        self.backing.prepare(step)?;
+        let (rate, mut y) = (u.like()?, u.like()?);
+        self.backing.free(step, u, &rate, &mut y)?;
+        let stations = self.face.stations(step)?;
+        let secant = self.backing.secant();
+        let Some(compliance) = self.backing.compliance() else {
+            u.view_mut()?;
+            return Ok(());
+        };
+        let free = u.view()?.iter().zip(y.view()?.iter()).map(|(u, y)| u - y / secant).collect();
+        let friction = self.face.interface().friction();
+        let start = start::displacements(&stations, friction, (compliance, secant), free);
+        u.view_mut()?.copy_from_slice(&start);
+        Ok(())
+    }
+}
+
 impl<B: Backing> TransientProblem for Condensed<B> {
     fn begin(&mut self, phase: Phase) {
         self.face.begin(phase);
@@ -181,6 +203,9 @@ impl<B: Backing> TransientProblem for Condensed<B> {
     }
 
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        if self.face.is_stiff(step, self.backing.softness() / self.backing.secant())? {
+            return self.start(step, u);
+        }
         let prediction = self.face.prediction(step)?;
         // Only rank 0 has values.
         for (value, increment) in u.view_mut()?.iter_mut().zip(prediction.iter().flatten()) {
