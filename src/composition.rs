@@ -3,12 +3,14 @@
 mod body;
 mod profile;
 
+use std::cell::RefCell;
 use std::path::Path;
+use std::rc::Rc;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
 
-use crate::bulk::{Arms, Bulk};
+use crate::bulk::Arms;
 use crate::element::mpjr::Quadrature;
 use crate::error::Result;
 use crate::friction::{CoulombTanh, ElasticSlip, Friction};
@@ -20,8 +22,8 @@ use crate::petsc::{Integrator, Linear, Matrix, Settings, Vector};
 use crate::profile::Profile;
 use crate::scene::{self, Scene, When};
 use crate::solve::{
-    Backing, Body, Compliance, Condensed, Following, Interior, LARGE_FACE, MAX_NEWTON, Monolithic, PeriodicColumn,
-    Relaxation, Remembering, Solid, Source, TransientProblem,
+    Backing, Body, Compliance, Condensed, Following, Inside, Interior, LARGE_FACE, Layered, MAX_NEWTON, Monolithic,
+    PeriodicColumn, Relaxation, Relaxations, Remembering, Solid, Sparse, TransientProblem,
 };
 
 use body::Materials;
@@ -44,26 +46,69 @@ pub struct Problem {
     pub mesh: Mesh,
 }
 
+/// The last elastic compliance on this rank, for the next scene with the same mesh and moduli: in a sweep it is
+/// computed once.
+#[derive(Default)]
+pub struct Compliances {
+    last: RefCell<Option<(Solid, Rc<Compliance>)>>,
+}
+
+impl Compliances {
+    fn get(&self, solid: &Solid, compute: impl FnOnce() -> Result<Compliance>) -> Result<Rc<Compliance>> {
+        let mut last = self.last.borrow_mut();
+        if let Some((_, compliance)) = last.as_ref().filter(|(other, _)| other == solid) {
+            return Ok(compliance.clone());
+        }
+        // Frees the old one first.
+        *last = None;
+        let compliance = Rc::new(compute()?);
+        *last = Some((solid.clone(), compliance.clone()));
+        Ok(compliance)
+    }
+}
+
 /// Builds what `scene`, which was read from `file`, asks for, distributed over `comm`. What it needs of other files is
 /// read by one rank.
 pub fn build(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Problem> {
+    build_reusing(comm, scene, file, &Compliances::default())
+}
+
+/// As [`build`], with what scenes before this one had computed.
+pub fn build_reusing(
+    comm: &SimpleCommunicator,
+    scene: &Scene,
+    file: &Path,
+    compliances: &Compliances,
+) -> Result<Problem> {
     // First what the scene may be refused for.
     let elevations = share_numbers(comm, || elevations(scene, file))?;
     let mesh = body::mesh(comm, scene, file)?;
     let profile = shape(scene, file, &elevations, Stretch::of(scene, &mesh.face))?.profile;
-    assemble(comm, scene, mesh, profile)
+    assemble(comm, scene, (mesh, profile), compliances)
 }
 
 /// As [`build`], with another profile than the scene's.
 pub fn build_with_profile(comm: &SimpleCommunicator, scene: &Scene, profile: Box<dyn Profile>) -> Result<Problem> {
-    assemble(comm, scene, body::mesh(comm, scene, Path::new(""))?, profile)
+    assemble(comm, scene, (body::mesh(comm, scene, Path::new(""))?, profile), &Compliances::default())
 }
 
-fn assemble(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, profile: Box<dyn Profile>) -> Result<Problem> {
+/// As [`build`], with the bytes of the .msh file that the scene names, on every rank, instead of the file.
+pub fn build_on_mesh(comm: &SimpleCommunicator, scene: &Scene, bytes: &[u8]) -> Result<Problem> {
+    let mesh = body::mesh_of(bytes, scene)?;
+    let profile = shape(scene, Path::new(""), &[], Stretch::of(scene, &mesh.face))?.profile;
+    assemble(comm, scene, (mesh, profile), &Compliances::default())
+}
+
+fn assemble(
+    comm: &SimpleCommunicator,
+    scene: &Scene,
+    (mesh, profile): (Mesh, Box<dyn Profile>),
+    compliances: &Compliances,
+) -> Result<Problem> {
     let materials = Materials::new(scene);
     let laws = Laws {
         profile,
-        penalty: scene.contact.penalty,
+        penalty: body::penalty(scene, &mesh),
         augmentation: match scene.contact.method {
             scene::Method::Penalty => None,
             scene::Method::Augmented { augmentation_tolerance } => Some(augmentation_tolerance),
@@ -72,11 +117,15 @@ fn assemble(comm: &SimpleCommunicator, scene: &Scene, mesh: Mesh, profile: Box<d
     };
     let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
     let solid = Solid { mesh, quadrilateral: body::quadrilateral(scene), regions: materials.regions.clone() };
-    match form(scene) {
-        Form::Monolithic => monolithic(comm, scene, (solid, materials), interface),
-        Form::Following => following(comm, scene, (solid, materials), interface),
-        Form::Remembering => remembering(comm, scene, (solid, materials), interface),
+    let mut problem = match form(scene) {
+        Form::Monolithic => monolithic(comm, scene, (solid, materials), interface)?,
+        Form::Following => following(comm, scene, (solid, materials), interface, compliances)?,
+        Form::Remembering => remembering(comm, scene, (solid, materials), interface)?,
+    };
+    if scene.output.energy {
+        problem.strategy.keep_account(&problem.u)?;
     }
+    Ok(problem)
 }
 
 /// How a scene is solved.
@@ -111,11 +160,10 @@ fn monolithic(
     let bulk = materials.bulk(&body, &u)?;
     let mut tangent = bulk.new_tangent()?;
     tangent.set_near_null_space(&mut body.coordinates()?)?;
-    let linear = if interface.friction().is_some() { Linear::Lu } else { Linear::Cholesky };
-    if linear == Linear::Cholesky {
+    if interface.friction().is_none() {
         tangent.declare_positive_definite()?;
     }
-    let integrator = integrator(comm, linear, &mut tangent)?;
+    let integrator = integrator(comm, scene, Linear::Preconditioned, &mut tangent)?;
     let strategy = Box::new(Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?);
     Ok(Problem { strategy, tangent, u, phases: phases(scene), integrator, mesh })
 }
@@ -125,11 +173,12 @@ fn following(
     scene: &Scene,
     (solid, materials): (Solid, Materials),
     interface: Interface,
+    compliances: &Compliances,
 ) -> Result<Problem> {
     let u = face_vector(comm, &solid.mesh)?;
-    let mine = if comm.rank() == 0 { compliance(scene, &solid).map(Some) } else { Ok(None) };
-    let compliance = agree(comm, mine)?;
-    let mut softness = compliance.as_ref().map_or(0.0, Compliance::largest);
+    let get = || compliances.get(&solid, || compliance(scene, &solid)).map(Some);
+    let compliance = agree(comm, if comm.rank() == 0 { get() } else { Ok(None) })?;
+    let mut softness = compliance.as_ref().map_or(0.0, |compliance| compliance.largest());
     comm.process_at_rank(0).broadcast_into(&mut softness);
     let mesh = solid.mesh.clone();
     let Materials { series, times, memory, .. } = materials;
@@ -138,7 +187,7 @@ fn following(
         None => None,
     };
     let interior = Interior::new(comm, solid);
-    let backing = Following { compliance, softness, relaxation, interior, secant: 1.0 };
+    let backing = Following { compliance, softness, relaxation, interior, secant: 1.0, account: None };
     condensed(comm, scene, mesh, u, (interface, backing))
 }
 
@@ -148,10 +197,9 @@ fn remembering(
     (solid, materials): (Solid, Materials),
     interface: Interface,
 ) -> Result<Problem> {
-    let whole = if comm.rank() == 0 { whole_body(&solid, &materials).map(Some) } else { Ok(None) };
-    let source = periodic_column(scene, &solid).map_or(Source::Schur, Source::Periodic);
+    let inside = if comm.rank() == 0 { inside(scene, &solid, materials).map(Some) } else { Ok(None) };
     let mesh = solid.mesh;
-    let backing = Remembering::new(comm, agree(comm, whole)?, source)?;
+    let backing = Remembering::new(comm, agree(comm, inside)?);
     let u = face_vector(comm, &mesh)?;
     condensed(comm, scene, mesh, u, (interface, backing))
 }
@@ -166,7 +214,7 @@ fn condensed<B: Backing + 'static>(
     let held: Vec<[bool; 2]> = mesh.face.unknown.iter().map(|&unknown| mesh.held[unknown as usize]).collect();
     let linear = if 2 * held.len() > LARGE_FACE { Linear::OwnIterative } else { Linear::Own };
     let mut tangent = Matrix::shell(comm, u.local_len())?;
-    let integrator = integrator(comm, linear, &mut tangent)?;
+    let integrator = integrator(comm, scene, linear, &mut tangent)?;
     let strategy = Box::new(Condensed::new(interface, backing, &u, &held, scene.solver.tolerance)?);
     Ok(Problem { strategy, tangent, u, phases: phases(scene), integrator, mesh })
 }
@@ -179,16 +227,20 @@ fn face_vector(comm: &SimpleCommunicator, mesh: &Mesh) -> Result<Vector> {
 /// The compliance of the face, by this rank alone.
 fn compliance(scene: &Scene, solid: &Solid) -> Result<Compliance> {
     match periodic_column(scene, solid) {
-        Some(column) => Ok(Compliance::of_periodic_columns(&column.stiffness(&[1.0]), column.columns)),
+        Some(column) => column.compliance(),
         None => Compliance::by_schur_complement(&Body::new(SimpleCommunicator::self_comm(), solid.clone())?),
     }
 }
 
 /// The whole body with its memory, on this rank alone.
-fn whole_body(solid: &Solid, materials: &Materials) -> Result<(Bulk, Body)> {
+fn inside(scene: &Scene, solid: &Solid, materials: Materials) -> Result<Box<dyn Inside>> {
+    if let Some(column) = periodic_column(scene, solid) {
+        let Materials { times, series, memory: rule, .. } = materials;
+        return Ok(Box::new(Layered::new(solid.clone(), &column, Relaxations { times, rule, series })));
+    }
     let body = Body::new(SimpleCommunicator::self_comm(), solid.clone())?;
     let bulk = materials.bulk(&body, &body.vector()?)?;
-    Ok((bulk, body))
+    Ok(Box::new(Sparse::new(bulk, body)?))
 }
 
 /// One column of a periodic layer; none for any other body.
@@ -197,8 +249,11 @@ fn periodic_column(scene: &Scene, solid: &Solid) -> Option<PeriodicColumn> {
     Some(PeriodicColumn::new(solid, layer.cells))
 }
 
-fn integrator(comm: &SimpleCommunicator, linear: Linear, tangent: &mut Matrix) -> Result<Integrator> {
-    Integrator::new(comm, Settings { linear, max_newton: MAX_NEWTON }, tangent)
+/// With nodal quadrature whole Newton steps are best, because those that overrun friction are bent node by node; Gauss
+/// points share their nodes, and a minimiser along the step must see to them.
+fn integrator(comm: &SimpleCommunicator, scene: &Scene, linear: Linear, tangent: &mut Matrix) -> Result<Integrator> {
+    let whole_steps = scene.contact.quadrature == scene::Quadrature::Nodal;
+    Integrator::new(comm, Settings { linear, max_newton: MAX_NEWTON, whole_steps }, tangent)
 }
 
 fn friction(friction: &scene::Friction) -> Friction {

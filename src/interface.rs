@@ -4,6 +4,7 @@
 //! numbers, so every rank sees the same error and the same totals; each rank assembles only the rows that it owns.
 
 mod augmentation;
+mod exchange;
 mod oscillation;
 mod sites;
 
@@ -20,6 +21,8 @@ use crate::solve::Station;
 
 use augmentation::{Augmentation, Multipliers};
 use sites::{Point, Sites};
+
+pub use exchange::Exchange;
 
 /// Displacements and rates of the face's nodes, in the order of the face: x, z of each.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,6 +54,8 @@ pub struct Interface {
     /// The nodes, where the fields are shown; none = where the tractions act.
     shown: Option<Sites>,
     augmentation: Option<Augmentation>,
+    /// Evaluations of the tangential law in residuals and tangents.
+    tangential_laws: usize,
 }
 
 /// The residual of the face, internal minus external, N/m, per node: (x, z).
@@ -123,7 +128,7 @@ impl Interface {
         let shown = (quadrature != Quadrature::Nodal).then(|| Sites::new(&face, Quadrature::Nodal));
         let augment = |tolerance| Augmentation::new(tolerance, laws.penalty, acting.points.len());
         let augmentation = laws.augmentation.map(augment);
-        Self { face, laws, acting, shown, augmentation }
+        Self { face, laws, acting, shown, augmentation, tangential_laws: 0 }
     }
 
     /// The face.
@@ -134,6 +139,11 @@ impl Interface {
     /// The friction law.
     pub fn friction(&self) -> Option<&Friction> {
         self.laws.friction.as_ref()
+    }
+
+    /// How often residuals and tangents evaluated the tangential law.
+    pub fn tangential_laws(&self) -> usize {
+        self.tangential_laws
     }
 
     /// Whether steps may have to be solved again: see [`Self::augment`].
@@ -149,12 +159,15 @@ impl Interface {
         self.attempt(placement)?;
         out.clear();
         out.resize(self.face.x.len(), Vector2::zeros());
+        let mut in_contact = 0;
         for Answer { point, traction, .. } in self.answers(&self.acting, placement, surface) {
+            in_contact += usize::from(traction.pressure > 0.0);
             let force = point.frame.tr_mul(&(traction.residual() * point.weight));
             for (node, shape) in point.nodes.iter().zip(point.shape) {
                 out[*node] += force * shape;
             }
         }
+        self.count_laws(in_contact);
         Ok(())
     }
 
@@ -171,7 +184,9 @@ impl Interface {
         if !nodal {
             out.coupling.resize(self.face.edges.len(), [Matrix2::zeros(); 2]);
         }
+        let mut in_contact = 0;
         for (i, Answer { point, traction, .. }) in self.answers(&self.acting, placement, surface).enumerate() {
+            in_contact += usize::from(traction.pressure > 0.0);
             let block = point.frame.tr_mul(&(traction.tangent(shift) * point.weight)) * point.frame;
             let ([a, b], [na, nb]) = (point.nodes, point.shape);
             out.diagonal[a] += block * (na * na);
@@ -183,6 +198,7 @@ impl Interface {
                 }
             }
         }
+        self.count_laws(in_contact);
         Ok(())
     }
 
@@ -195,11 +211,10 @@ impl Interface {
         let mut totals = Totals::default();
         let (mut length, mut contact, mut stick) = (0.0, 0.0, 0.0);
         for Answer { point, elevation, motion, traction } in self.answers(&self.acting, placement, surface) {
-            let force = point.frame.tr_mul(&traction.residual());
-            let dx = point.weight * point.frame[(0, 0)];
-            totals.normal_force += point.weight * force.y;
-            totals.tangential_force += dx * traction.shear.shear;
-            totals.hysteretic_force += dx * traction.pressure * elevation.slope;
+            let [normal, tangential, hysteretic] = point.forces(&traction, elevation.slope);
+            totals.normal_force += normal;
+            totals.tangential_force += tangential;
+            totals.hysteretic_force += hysteretic;
             totals.max_penetration = totals.max_penetration.max(motion.penetration());
             length += point.weight;
             if traction.pressure > 0.0 {
@@ -417,6 +432,13 @@ impl Interface {
             let traction = mpjr::traction(motion, resistance, self.laws.friction.as_ref());
             Answer { point, elevation, motion, traction }
         })
+    }
+
+    /// The tangential law is asked where there is pressure.
+    fn count_laws(&mut self, in_contact: usize) {
+        if self.laws.friction.is_some() {
+            self.tangential_laws += in_contact;
+        }
     }
 }
 

@@ -4,6 +4,7 @@ pub mod bulk;
 pub mod cli;
 pub mod composition;
 pub mod element;
+pub mod energy;
 pub mod error;
 pub mod expression;
 pub mod friction;

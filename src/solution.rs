@@ -8,7 +8,7 @@ use crate::composition::{self, Problem};
 use crate::error::Result;
 use crate::output::{HistoryRow, InterfaceFrame};
 use crate::scene::Scene;
-use crate::solve::{Counts, Driver, Observer, Report};
+use crate::solve::{BulkFields, Counts, Driver, Observer, Report};
 
 /// What a scene came to; the same on all ranks.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,19 +19,29 @@ pub struct Solution {
     pub history: Vec<HistoryRow>,
     /// The contact face at the end of each phase.
     pub ends: Vec<InterfaceFrame>,
+    /// Bulk fields of this rank at the moments that the scene asks for them.
+    pub bulk: Vec<BulkFields>,
     /// What it took.
     pub counts: Counts,
 }
 
 /// Solves a scene on all ranks of `comm`.
 pub fn solve(comm: &SimpleCommunicator, scene: &Scene) -> Result<Solution> {
-    let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, mesh } =
-        composition::build(comm, scene, Path::new(""))?;
-    let mut collected = Collected { history: vec![HistoryRow::default()], ends: Vec::new() };
+    solve_problem(composition::build(comm, scene, Path::new(""))?)
+}
+
+/// Solves a scene on all ranks of `comm`, with the bytes of the .msh file that it names instead of the file.
+pub fn solve_on_mesh(comm: &SimpleCommunicator, scene: &Scene, mesh: &[u8]) -> Result<Solution> {
+    solve_problem(composition::build_on_mesh(comm, scene, mesh)?)
+}
+
+fn solve_problem(problem: Problem) -> Result<Solution> {
+    let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, mesh } = problem;
+    let mut collected = Collected { history: vec![HistoryRow::default()], ends: Vec::new(), bulk: Vec::new() };
     let mut driver = Driver::new(strategy.as_mut(), &mut collected, &phases);
     driver.run(&mut integrator, &mut tangent, &mut u)?;
     let counts = driver.counts();
-    Ok(Solution { x: mesh.face.x, history: collected.history, ends: collected.ends, counts })
+    Ok(Solution { x: mesh.face.x, history: collected.history, ends: collected.ends, bulk: collected.bulk, counts })
 }
 
 impl Solution {
@@ -48,6 +58,7 @@ impl Solution {
 
 /// The row of the history that says where a run is.
 pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
+    let energy = report.problem.energy().unwrap_or_default();
     let mut contact = report.problem.contact()?;
     let totals = contact.totals()?;
     Ok(HistoryRow {
@@ -64,7 +75,7 @@ pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
         stuck_slip: totals.stuck_slip,
         traction_oscillation: totals.traction_oscillation,
         newton_iterations: report.newton,
-        ..HistoryRow::default()
+        energy,
     })
 }
 
@@ -88,6 +99,7 @@ pub fn frame(report: &mut Report<'_>) -> Result<InterfaceFrame> {
 struct Collected {
     history: Vec<HistoryRow>,
     ends: Vec<InterfaceFrame>,
+    bulk: Vec<BulkFields>,
 }
 
 impl Observer for Collected {
@@ -95,6 +107,9 @@ impl Observer for Collected {
         self.history.push(row(&mut report)?);
         if report.phase_end {
             self.ends.push(frame(&mut report)?);
+        }
+        if report.bulk_output {
+            self.bulk.push(report.problem.bulk_fields(report.u)?);
         }
         Ok(())
     }

@@ -259,7 +259,7 @@ fn petsc_options() {
 fn wrong_petsc_options() {
     for (options, words) in [
         ("-ksp_type frob", "KSP type frob"),
-        ("-pc_factor_mat_solver_type frob", "solver type frob"),
+        ("-pc_type lu -pc_factor_mat_solver_type frob", "solver type frob"),
         ("-snes_max_it many", "many has no integer value"),
         ("ksp_type gmres", "\"ksp_type\" after -- is neither a PETSc option"),
         ("-ksp_rtol 1e-3 1e-4", "\"1e-4\" after --"),

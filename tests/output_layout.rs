@@ -103,7 +103,7 @@ fn layout_is_that_of_the_contract() {
     let mut expected: Vec<(String, Vec<usize>, TypeDescriptor, &str)> = Vec::new();
     for (names, units) in [
         ("time", "s"),
-        ("approach sliding max_penetration", "m"),
+        ("approach sliding max_penetration stuck_slip", "m"),
         ("normal_force tangential_force hysteretic_force", "N/m"),
         ("contact_fraction stick_fraction traction_oscillation", "1"),
         ("energy/external_work energy/stored energy/viscoelastic_dissipation energy/friction_dissipation", "J/m"),

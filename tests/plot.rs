@@ -54,16 +54,25 @@ fn check(directory: &Path, printed: &str, names: &[&str]) -> Vec<String> {
 }
 
 #[test]
-fn a_run_has_six_figures() {
+fn a_run_has_eight_figures() {
     let directory = tempfile::tempdir().unwrap();
     let at = directory.path();
     let all = ["output.interface_every=1", "output.bulk_at=[\"indent\", \"slide\"]"];
     run(at, "layer.h5", &all);
     let printed = succeed(at, &["plot", "layer.h5", "--out", "figures"]);
-    let names = ["history", "tractions", "stress", "stick-slip", "profile", "material"].map(|n| format!("layer-{n}"));
+    let names = ["history", "reactions", "energy", "tractions", "stress", "stick-slip", "profile", "material"]
+        .map(|n| format!("layer-{n}"));
     let svgs = check(at, &printed, &names.each_ref().map(String::as_str));
     for (svg, texts) in svgs.iter().zip([
         &["normal force N, N/m", "f N with f = 0.2", "end of indent and onset"][..],
+        &["approach D, ", "tangential displacement, ", "computed"],
+        &[
+            "work of the indenter",
+            "dissipated by friction",
+            "work less friction",
+            "stored in the layer",
+            "what does not balance",
+        ],
         &["(a) approach: pressure", "(b) from stick to slip: shear traction", "(c) gross sliding", "pressure p, Pa"],
         &["(a) σ_zz, t = 10 s", "(d) τ_xz", "σ_zz / E(0), 10⁻⁴", "x, m (shifted by half a period)"],
         &["no contact", "stick", "slip", "time t, s"],
@@ -77,14 +86,38 @@ fn a_run_has_six_figures() {
 
     // One figure by its name; without bulk fields the others.
     check(at, &succeed(at, &["plot", "layer.h5", "history", "--out", "one"]), &["layer-history"]);
-    run(at, "plain.h5", &[]);
+    run(at, "plain.h5", &["output.energy=false"]);
     let printed = succeed(at, &["plot", "plain.h5"]);
-    let names = ["history", "tractions", "stick-slip", "profile", "material"].map(|n| format!("plain-{n}"));
+    let names =
+        ["history", "reactions", "tractions", "stick-slip", "profile", "material"].map(|n| format!("plain-{n}"));
     check(at, &printed, &names.each_ref().map(String::as_str));
     let (text, code) = fail(at, &["plot", "plain.h5", "stress"]);
     assert!(text.contains("plain.h5: the figure stress cannot be drawn: no bulk fields") && code == 4, "{text}");
+    let (text, _) = fail(at, &["plot", "plain.h5", "energy"]);
+    assert!(text.contains("the figure energy cannot be drawn: no energies (the scene's output.energy"), "{text}");
     let (text, code) = fail(at, &["plot", "plain.h5", "figure7"]);
-    assert!(text.contains("no figure figure7; a result file has: history, tractions, stress") && code == 2, "{text}");
+    assert!(
+        text.contains("no figure figure7; a result file has: history, reactions, energy, tractions") && code == 2,
+        "{text}"
+    );
+}
+
+/// Figures A1 to A3, with the closed forms of the half disk; they are for one material under a parabola.
+#[test]
+fn appendix_a_has_its_closed_forms() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = directory.path();
+    let scene = repository("runs/appendix-a-bbar.toml");
+    let few = ["--set", "phase.indent.steps=2", "--set", "phase.oscillate.steps=5"];
+    succeed(at, &[&["run", &scene, "--out", "disk.h5"], &few[..]].concat());
+    let printed = succeed(at, &["plot", "disk.h5", "reactions", "--half-disk", "5"]);
+    let svg = &check(at, &printed, &["disk-reactions"])[0];
+    assert!(svg.contains("closed form") && svg.contains("computed"));
+    run(at, "layer.h5", &[]);
+    let (text, code) = fail(at, &["plot", "layer.h5", "reactions", "--half-disk", "5"]);
+    assert!(text.contains("for one material and a parabola") && code == 4, "{text}");
+    let (text, code) = fail(at, &["plot", "disk.h5", "--half-disk", "0"]);
+    assert!(text.contains("--half-disk: must be a positive radius in m") && code == 2, "{text}");
 }
 
 #[test]
@@ -96,7 +129,7 @@ fn frictionless_and_elastic_runs_and_those_that_only_indent_or_only_slide_are_dr
     run(at, "slides.h5", &["phase=[{approach=1e-3, duration=1.0, steps=3, velocity=0.1}]"]);
     for name in ["elastic", "fixed", "slides"] {
         let printed = succeed(at, &["plot", &format!("{name}.h5")]);
-        assert_eq!(printed.lines().count(), 10, "{printed}");
+        assert_eq!(printed.lines().count(), 14, "{printed}");
     }
 }
 
@@ -121,7 +154,9 @@ fn a_sweep_has_figure_7_with_its_bounds() {
     for text in ["(a) 1 arm; v in m/s", "elastic, G(0)", "elastic, G(∞)", "0.02154", "(b) steady value", "t/t₀"] {
         assert!(svgs[0].contains(text), "{text}");
     }
-    assert!(svgs[2].contains("(c) total friction"));
+    for text in ["(c) total friction", "(d) peak", "share of the arms in the work, %", "steady stored energy"] {
+        assert!(svgs[2].contains(text), "{text}");
+    }
     check(at, &succeed(at, &["plot", "study", "figure7"]), &["figure7"]);
 
     std::fs::create_dir(at.join("empty")).unwrap();

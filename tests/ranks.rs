@@ -20,6 +20,8 @@ const HISTORY: [&str; 9] = [
     "stick_fraction",
     "max_penetration",
 ];
+const ENERGY: [&str; 6] =
+    ["external_work", "stored", "viscoelastic_dissipation", "friction_dissipation", "penalty", "imbalance"];
 const INTERFACE: [&str; 6] = ["pressure", "shear", "gap", "slip_rate", "displacement_x", "displacement_z"];
 
 /// All unknowns, distributed.
@@ -90,6 +92,13 @@ fn assert_same(one: &Outcome, other: &Outcome, tolerance: f64) -> f64 {
     };
     for name in HISTORY {
         compare(name, &one.history(name).unwrap(), &other.history(name).unwrap());
+    }
+    let (works, energies) = (one.history("energy/external_work").unwrap(), ENERGY.map(|name| format!("energy/{name}")));
+    for name in energies {
+        // Relative to the work: the small ones are differences of large ones.
+        let [a, b] = [&one, &other].map(|results| results.history(&name).unwrap());
+        let share = |values: &[f64]| values.iter().chain(&works).copied().collect::<Vec<_>>();
+        compare(&name, &share(&a), &share(&b));
     }
     for name in INTERFACE {
         compare(name, &one.interface(name).unwrap().values, &other.interface(name).unwrap().values);

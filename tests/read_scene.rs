@@ -60,7 +60,7 @@ fn what_may_be_absent_has_its_default() {
     assert_eq!(scene.contact.quadrature, Quadrature::Nodal);
     assert_eq!(scene.friction, None);
     assert_eq!(scene.solver, Solver { strategy: Strategy::Auto, tolerance: 1e-8 });
-    assert_eq!(scene.output, Output { interface_every: 1, bulk_at: vec![], checkpoint_every: 0 });
+    assert_eq!(scene.output, Output { interface_every: 1, bulk_at: vec![], checkpoint_every: 0, energy: true });
     let [first, second] = scene.phases.as_slice() else { panic!("two phases") };
     assert_eq!((first.name.as_str(), second.name.as_str()), ("phase-1", "phase-2"));
     assert_eq!((first.approach, first.motion), (None, Motion::Velocity(0.0)));
@@ -91,7 +91,7 @@ fn the_paper_s_scene_is_read_as_written() {
 /// pressure where it hardly changes its volume; both by hand.
 #[test]
 fn a_tolerance_is_a_penalty() {
-    let penalty = |overrides: &[&str]| read_set(SMALLEST, overrides).unwrap().contact.penalty;
+    let penalty = |overrides: &[&str]| read_set(SMALLEST, overrides).unwrap().contact.penalty.stiffness().unwrap();
     let tolerance = "contact={ tolerance = 1e-2 }";
     // G = 1 Pa, dx = 0.5 m: C = 0.7 * 0.5 / pi m/Pa.
     let wave = std::f64::consts::PI / (0.7 * 0.5) / 1e-2;
@@ -101,7 +101,7 @@ fn a_tolerance_is_a_penalty() {
     let set = [tolerance, "material={ shear_modulus = 1, poisson_ratio = 0.49 }"];
     assert!((penalty(&set) * 1e-2 * 0.02 / 1.02 - 1.0).abs() < 1e-12);
     let scene = read_set(SMALLEST, &set).unwrap();
-    assert!((added_compliance(scene.contact.penalty, layer(&scene), &scene.materials) - 1e-2).abs() < 1e-15);
+    assert!((added_compliance(penalty(&set), layer(&scene), &scene.materials) - 1e-2).abs() < 1e-15);
 }
 
 #[test]
@@ -284,8 +284,16 @@ impl Random {
         let rms = self.of(&[Rms::RmsSlope(radius), Rms::RmsHeight(radius)]);
         let file = self.of(&["a.txt", "../é \"b\"/c.csv", "/abs/d"]).to_owned();
         let period = self.of(&[None, Some(wavelength)]);
-        let friction =
-            Friction::CoulombTanh { coefficient: 10.0 * self.unit(), regularisation: 1e-12 * self.positive() };
+        let [coefficient, small, tolerance] = [10.0 * self.unit(), 1e-12 * self.positive(), self.unit()];
+        let friction = self.of(&[
+            Friction::CoulombTanh { coefficient, regularisation: small },
+            Friction::CoulombElasticSlip { coefficient, elastic_slip: small },
+        ]);
+        let quadrature = self.of(&[Quadrature::Nodal, Quadrature::Gauss]);
+        let method = match quadrature {
+            Quadrature::Nodal => Method::Augmented { augmentation_tolerance: 1e-6 * tolerance },
+            Quadrature::Gauss => Method::Penalty,
+        };
         let ends = phases.iter().take(2).map(|phase| When::PhaseEnd(phase.name.clone()));
         let times = [When::Time(phases[0].duration * self.unit())];
         let body = if self.below(4) == 0 { self.mesh_file() } else { self.layer(wavelength) };
@@ -310,15 +318,13 @@ impl Random {
                     seed: (seed * 1e18) as u64,
                 },
             ]),
-            contact: Contact {
-                penalty: 1e200 * self.positive(),
-                quadrature: self.of(&[Quadrature::Nodal, Quadrature::Gauss]),
-            },
+            contact: Contact { penalty: Penalty::Stiffness(1e200 * self.positive()), quadrature, method },
             friction: self.of(&[None, Some(friction)]),
             output: Output {
                 interface_every: self.below(3) as usize,
                 bulk_at: if self.below(2) == 0 { vec![] } else { ends.chain(times).collect() },
                 checkpoint_every: self.below(3) as usize,
+                energy: self.below(2) == 0,
             },
             phases,
             solver: Solver {

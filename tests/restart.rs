@@ -138,15 +138,22 @@ fn nothing_is_lost_by_twenty_kills() {
 #[test]
 fn a_signal_to_one_rank_stops_all() {
     let directory = tempfile::tempdir().unwrap();
-    for (material, solver, within) in
-        [(ratio(), "", 0.0), (bulk(), "", 0.0), (bulk(), "tolerance = 1e-13\nstrategy = \"monolithic\"", 1e-10)]
-    {
+    let elastic_slip = "friction={law=\"coulomb_elastic_slip\",coefficient=0.2,elastic_slip=1e-6}";
+    let augmented = "contact={penalty=1e4,method=\"augmented\"}";
+    let remembered = ["--set", elastic_slip, "--set", augmented];
+    let gauss = ["--set", elastic_slip, "--set", "contact.quadrature=gauss"];
+    for (material, solver, within, set) in [
+        (ratio(), "", 0.0, &[][..]),
+        (bulk(), "", 0.0, &remembered),
+        (ratio(), "", 0.0, &gauss),
+        (bulk(), "tolerance = 1e-13\nstrategy = \"monolithic\"", 1e-10, &[]),
+    ] {
         let scene = scene(directory.path(), 40, &material, solver);
         let (whole, stopped) = (directory.path().join("whole.h5"), directory.path().join("stopped.h5"));
-        output_of(run(&mut program(1), &scene, &whole).args(["--set", "output.bulk_at=[]"]));
+        output_of(run(&mut program(1), &scene, &whole).args(["--set", "output.bulk_at=[]"]).args(set));
         for (signal, ranks) in [("TERM", 2), ("INT", 1)] {
             let mut command = run(&mut program(2), &scene, &stopped);
-            command.args(["--set", "output.bulk_at=[]"]);
+            command.args(["--set", "output.bulk_at=[]"]).args(set);
             let mut child = command.stdout(Stdio::null()).spawn().unwrap();
             wait_for(&mut child, &stopped, 4);
             let rank = processes_of(&child).pop().unwrap();
@@ -156,7 +163,8 @@ fn a_signal_to_one_rank_stops_all() {
             assert_eq!(results.text("status").unwrap(), "stopped");
             assert!(results.history("time").unwrap().len() < 60);
             drop(results);
-            output_of(run(&mut program(ranks), &scene, &stopped).args(["--resume", "--set", "output.bulk_at=[]"]));
+            let resume = ["--resume", "--set", "output.bulk_at=[]"];
+            output_of(run(&mut program(ranks), &scene, &stopped).args(resume).args(set));
             assert_same(&whole, &stopped, within);
         }
     }
@@ -165,17 +173,20 @@ fn a_signal_to_one_rank_stops_all() {
 /// A face so large that steps are solved with factors of steps before: these are part of the state.
 #[test]
 fn factors_that_serve_for_later_steps_come_back() {
-    for material in [ratio(), bulk()] {
+    // A periodic face of this size has no factor.
+    for (material, sides) in [(ratio(), "free"), (bulk(), "free"), (bulk(), "periodic")] {
         let directory = tempfile::tempdir().unwrap();
         let scene = scene(directory.path(), 40, &material, "");
         let (whole, killed) = (directory.path().join("whole.h5"), directory.path().join("killed.h5"));
-        let cells = ["--set", "layer.cells=[640, 3]"];
+        let sides_key = format!("layer.sides={sides}");
+        let cells = ["--set", "layer.cells=[640, 3]", "--set", &sides_key];
         output_of(run(&mut program(1), &scene, &whole).args(cells));
         let mut child = run(&mut program(1), &scene, &killed).args(cells).stdout(Stdio::null()).spawn().unwrap();
         wait_for(&mut child, &killed, 8);
         child.kill().unwrap();
         child.wait().unwrap();
-        assert!(checkpoint::read(&killed).unwrap().unwrap().fields.iter().any(|(name, _)| name == "factor"));
+        let state = checkpoint::read(&killed).unwrap().unwrap();
+        assert_eq!(state.fields.iter().any(|(name, _)| name == "factor"), sides == "free");
         output_of(run(&mut program(1), &scene, &killed).args(cells).arg("--resume"));
         assert_same(&whole, &killed, 0.0);
     }

@@ -1,5 +1,6 @@
 //! The arms of the bulk: nodal fields that carry its memory.
 
+use super::springs::{Products, Springs};
 use crate::error::Result;
 use crate::petsc::{Step, Vector};
 use crate::rheology::{Factors, Memory};
@@ -36,7 +37,7 @@ struct Carried {
 
 impl Series {
     /// sum_i mu_i gain_i
-    fn gain(&self, factors: &[Factors]) -> f64 {
+    pub fn gain(&self, factors: &[Factors]) -> f64 {
         self.weights.iter().zip(factors).map(|(weight, factor)| weight * factor.gain).sum()
     }
 
@@ -60,6 +61,16 @@ impl Arms {
         })
     }
 
+    /// The same arms, at rest.
+    pub fn at_rest(&self, layout: &Vector) -> Result<Self> {
+        Self::new(self.times.clone(), self.rule, layout)
+    }
+
+    /// The u of the last accepted step.
+    pub fn last(&self) -> &Vector {
+        &self.previous
+    }
+
     /// How many fields carry memory.
     pub fn len(&self) -> usize {
         self.elongations.len()
@@ -75,6 +86,27 @@ impl Arms {
         self.times.iter().map(|time| self.rule.factors(dt / time)).collect()
     }
 
+    /// Takes the springs of a part to the end of a step that ends at `u`, before [`Self::commit`]; `v` = K (u+ - u). Gives
+    /// what the dashpots took, J/m.
+    pub fn spend(&mut self, series: &Series, step: Step, u: &Vector, v: &Vector, springs: &mut Springs) -> Result<f64> {
+        let change = self.change(u)?.dot(v)?;
+        let on = |(weight, elongation): (&f64, &Vector)| if *weight == 0.0 { Ok(0.0) } else { elongation.dot(v) };
+        let products = Products {
+            sum: change + 2.0 * self.previous.dot(v)?,
+            change,
+            arms: series.weights.iter().zip(&self.elongations).map(on).collect::<Result<_>>()?,
+        };
+        let of_step = |time: &f64| (self.rule.factors(step.dt / time), self.rule.losses(step.dt / time));
+        Ok(springs.advance(series, &products, &self.times.iter().map(of_step).collect::<Vec<_>>()))
+    }
+
+    /// u+ - u for a step that ends at `u`.
+    pub fn change(&mut self, u: &Vector) -> Result<&Vector> {
+        self.work.copy_from(u)?;
+        self.work.add(-1.0, &self.previous)?;
+        Ok(&self.work)
+    }
+
     /// y = mu_0 u + sum mu_i (decay_i z_i + gain_i dt rate) at a trial state, m. `index` numbers the series.
     pub fn trial(
         &mut self,
@@ -87,6 +119,18 @@ impl Arms {
         self.effective.copy_from(&self.carried.history[index].0)?;
         self.effective.add(series.long_term, u)?;
         self.effective.add(series.gain(&self.carried.factors) * step.dt, rate)?;
+        Ok(&self.effective)
+    }
+
+    /// The u at the end of a step that gives this y: the inverse of [`Self::trial`].
+    pub fn answering(&mut self, series: &Series, step: Step, y: &Vector) -> Result<&Vector> {
+        self.carry(0, series, step.dt)?;
+        let factors = &self.carried.factors;
+        let (gain, secant) = (series.gain(factors), series.secant(factors));
+        self.effective.copy_from(y)?;
+        self.effective.add(-1.0, &self.carried.history[0].0)?;
+        self.effective.add(gain, &self.previous)?;
+        self.effective.scale(1.0 / secant)?;
         Ok(&self.effective)
     }
 
@@ -105,8 +149,7 @@ impl Arms {
     /// Takes the arms to the end of an accepted step: the only place that changes them.
     pub fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {
         let factors = self.factors(step.dt);
-        self.work.copy_from(u)?;
-        self.work.add(-1.0, &self.previous)?;
+        self.change(u)?;
         for (elongation, factor) in self.elongations.iter_mut().zip(&factors) {
             elongation.combine(factor.gain, &self.work, factor.decay)?;
         }
@@ -115,16 +158,16 @@ impl Arms {
         Ok(())
     }
 
-    /// Adds the elongations to a snapshot.
-    pub fn save(&self, order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()> {
+    /// Adds the elongations to a snapshot, under `name`.
+    pub fn save(&self, name: &str, order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()> {
         let mut arms = self.elongations.iter().enumerate();
-        arms.try_for_each(|(index, elongation)| order.save(format!("arm-{index}"), elongation, snapshot))
+        arms.try_for_each(|(index, elongation)| order.save(format!("{name}-{index}"), elongation, snapshot))
     }
 
     /// Takes the elongations at the accepted state `u` from a snapshot.
-    pub fn restore(&mut self, order: &NaturalOrder, snapshot: &Snapshot, u: &Vector) -> Result<()> {
+    pub fn restore(&mut self, name: &str, order: &NaturalOrder, snapshot: &Snapshot, u: &Vector) -> Result<()> {
         for (index, elongation) in self.elongations.iter_mut().enumerate() {
-            order.restore(&format!("arm-{index}"), elongation, snapshot)?;
+            order.restore(&format!("{name}-{index}"), elongation, snapshot)?;
         }
         self.previous.copy_from(u)?;
         self.carried.dt = f64::NAN;

@@ -11,13 +11,16 @@
 //! dt the tangent is the constant matrix sum_p c_p K_p, c_p = mu_0p + sum_i mu_ip gain_i. An elastic bulk has no z.
 
 mod arms;
+mod springs;
 
+use crate::energy::BodyEnergy;
 use crate::error::Result;
 use crate::petsc::{Matrix, Step, Vector};
 use crate::rheology::Memory;
 use crate::snapshot::{NaturalOrder, Snapshot};
 
 pub use arms::{Arms, Series};
+pub use springs::{Account, Products, Springs};
 
 /// A stiffness with its modulus, and how it relaxes.
 pub struct Part {
@@ -31,6 +34,8 @@ pub struct Part {
 pub struct Bulk {
     parts: Vec<Part>,
     arms: Option<Arms>,
+    /// Only where the energy is asked for.
+    account: Option<Account>,
     work: Vector,
 }
 
@@ -38,7 +43,18 @@ impl Bulk {
     /// A body at rest. `times` are the relaxation times of the arms, s, that the parts' series refer to.
     pub fn new(parts: Vec<Part>, times: Vec<f64>, rule: Memory, layout: &Vector) -> Result<Self> {
         let arms = if times.is_empty() { None } else { Some(Arms::new(times, rule, layout)?) };
-        Ok(Self { parts, arms, work: layout.like()? })
+        Ok(Self { parts, arms, account: None, work: layout.like()? })
+    }
+
+    /// Keeps account of the energy from here on, at rest.
+    pub fn keep_account(&mut self) {
+        let arms = |part: &Part| part.series.as_ref().map_or(0, |series| series.weights.len());
+        self.account = Some(Account::new(self.parts.iter().map(arms)));
+    }
+
+    /// The energy at the accepted state, where it is kept account of.
+    pub fn energy(&self) -> Option<BodyEnergy> {
+        self.account.as_ref().map(Account::energy)
     }
 
     /// How many nodal fields carry memory.
@@ -73,12 +89,17 @@ impl Bulk {
 
     /// tangent = sum_p c_p K_p at step length `dt`.
     pub fn tangent(&self, dt: f64, tangent: &mut Matrix) -> Result<()> {
-        for (index, (part, secant)) in self.parts.iter().zip(self.secants(dt)).enumerate() {
+        self.sum(&self.secants(dt), tangent)
+    }
+
+    /// sum = sum_p factor_p K_p
+    pub fn sum(&self, factors: &[f64], sum: &mut Matrix) -> Result<()> {
+        for (index, (part, &factor)) in self.parts.iter().zip(factors).enumerate() {
             if index == 0 {
-                tangent.copy_from(&part.stiffness)?;
-                tangent.scale(secant)?;
+                sum.copy_from(&part.stiffness)?;
+                sum.scale(factor)?;
             } else {
-                tangent.add(secant, &part.stiffness)?;
+                sum.add(factor, &part.stiffness)?;
             }
         }
         Ok(())
@@ -86,17 +107,42 @@ impl Bulk {
 
     /// Takes the memory to the end of an accepted step.
     pub fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {
+        self.spend(step, u)?;
         self.arms.as_mut().map_or(Ok(()), |arms| arms.commit(step, u))
+    }
+
+    /// Takes the account to the end of an accepted step.
+    fn spend(&mut self, step: Step, u: &Vector) -> Result<()> {
+        let Some(account) = &mut self.account else { return Ok(()) };
+        for (part, springs) in self.parts.iter().zip(&mut account.parts) {
+            match (&part.series, &mut self.arms) {
+                (Some(series), Some(arms)) => {
+                    part.stiffness.multiply(arms.change(u)?, &mut self.work)?;
+                    account.dissipated += arms.spend(series, step, u, &self.work, springs)?;
+                }
+                _ => {
+                    part.stiffness.multiply(u, &mut self.work)?;
+                    springs.long_term = 0.5 * u.dot(&self.work)?;
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Adds the memory to a snapshot.
     pub fn save(&self, order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()> {
-        self.arms.as_ref().map_or(Ok(()), |arms| arms.save(order, snapshot))
+        if let Some(account) = &self.account {
+            account.save(snapshot);
+        }
+        self.arms.as_ref().map_or(Ok(()), |arms| arms.save("arm", order, snapshot))
     }
 
     /// Takes the memory at the accepted state `u` from a snapshot.
     pub fn restore(&mut self, order: &NaturalOrder, snapshot: &Snapshot, u: &Vector) -> Result<()> {
-        self.arms.as_mut().map_or(Ok(()), |arms| arms.restore(order, snapshot, u))
+        if let Some(account) = &mut self.account {
+            account.restore(snapshot)?;
+        }
+        self.arms.as_mut().map_or(Ok(()), |arms| arms.restore("arm", order, snapshot, u))
     }
 
     /// Gives each part's effective displacement y_p = mu_0 u + sum mu_i z_i at the accepted state `u`, m.

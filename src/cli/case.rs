@@ -11,7 +11,7 @@ use super::origin::{Begun, Origin};
 use super::progress::Progress;
 use super::record::{Checkpoints, Recording};
 use super::summary::Outcome;
-use crate::composition::{self, Problem};
+use crate::composition::{self, Compliances, Problem};
 use crate::error::{Error, Result};
 use crate::loading::Phase;
 use crate::mesh::Mesh;
@@ -37,6 +37,8 @@ pub struct Job<'a> {
     pub out: &'a Path,
     /// Where it starts from.
     pub origin: Origin<'a>,
+    /// What runs before this one had computed.
+    pub compliances: &'a Compliances,
     /// Whether the state at the end is kept in the checkpoint, for other runs to go on from.
     pub keep_state: bool,
 }
@@ -59,7 +61,7 @@ pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<
     let (comm, scene) = (job.comm, job.scene);
     let (clock, started) = (Instant::now(), SystemTime::now());
     let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, mesh } =
-        composition::build(comm, scene, job.file)?;
+        composition::build_reusing(comm, scene, job.file, job.compliances)?;
     let begun = job.origin.load(comm, job.out, &phases)?;
     if let Some(begun) = &begun {
         strategy.restore(&begun.snapshot, &mut u)?;
@@ -139,7 +141,7 @@ fn plan(scene: &Scene, mesh: &Mesh, phases: &[Phase]) -> Plan {
         // A step that is cut adds rows.
         history_rows: 1 + steps + steps / 8,
         phase_names: phases.iter().map(|phase| phase.name.clone()).collect(),
-        energy: false,
+        energy: scene.output.energy,
         interface_rows: steps.checked_div(scene.output.interface_every).map_or(ends, |rows| rows + ends),
         interface_x: mesh.face.x.clone(),
         bulk: bulk_plan(scene, mesh, phases),

@@ -30,6 +30,9 @@ pub struct PlotArguments {
     /// Beside materials, the power law E(t) = E t^-ALPHA / Gamma(1 - ALPHA) they stand for, with G = E/(2 (1 + nu))
     #[arg(long, value_name = "E,ALPHA")]
     fractional: Option<PowerLaw>,
+    /// Beside the figure reactions, the closed forms of a half disk of this radius, m, fixed along its arc
+    #[arg(long, value_name = "RADIUS")]
+    half_disk: Option<f64>,
 }
 
 /// A figure: the stem of its files, and what it shows.
@@ -53,20 +56,30 @@ fn drawings(arguments: &PlotArguments) -> Result<Vec<Drawing>> {
     if arguments.fractional.is_some() && !is_material {
         return Err(Error::Usage("--fractional: only beside a material; the first argument is none".into()));
     }
+    if let Some(radius) = arguments.half_disk {
+        if is_material || input.is_dir() {
+            return Err(Error::Usage("--half-disk: only beside a result file; the first argument is none".into()));
+        }
+        if !(radius > 0.0 && radius.is_finite()) {
+            return Err(Error::Usage(format!("--half-disk: must be a positive radius in m, got {radius}")));
+        }
+    }
     if input.is_dir() {
         of_sweep(input, &arguments.figures)
     } else if is_material {
         of_materials(arguments)
     } else {
-        of_run(input, &arguments.figures)
+        of_run(input, arguments)
     }
 }
 
 /// STEM-FIGURE for each figure of a result file.
-fn of_run(file: &Path, asked: &[String]) -> Result<Vec<Drawing>> {
+fn of_run(file: &Path, arguments: &PlotArguments) -> Result<Vec<Drawing>> {
+    let asked = arguments.figures.as_slice();
     let known: Vec<&str> = results::FIGURES.iter().map(|kind| kind.name).collect();
     check(asked, &known, "a result file")?;
-    let run = Run::open(file)?;
+    let mut run = Run::open(file)?;
+    run.half_disk = arguments.half_disk;
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let wanted = |kind: &&results::Kind| match asked {
         [] => kind.possible(&run),

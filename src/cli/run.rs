@@ -11,6 +11,7 @@ use super::interrupt::Interrupt;
 use super::origin::{self, Origin};
 use super::progress::Progress;
 use super::summary;
+use crate::composition::Compliances;
 use crate::error::{Error, Result};
 use crate::parallel::{agree, share_text};
 use crate::petsc::Session;
@@ -70,7 +71,17 @@ fn solve(
         origin = Origin::Checkpoint;
     }
 
-    let job = Job { session, comm: world, interrupt, scene: &scene, file, out: &out, origin, keep_state: false };
+    let job = Job {
+        session,
+        comm: world,
+        interrupt,
+        scene: &scene,
+        file,
+        out: &out,
+        origin,
+        compliances: &Compliances::default(),
+        keep_state: false,
+    };
     let done = case::solve(&job, |steps| Progress::new(steps, world.rank() == 0))?;
     if world.rank() == 0 {
         print!("{}", summary::outcome(&scene, &done.outcome, &done.last));

@@ -5,10 +5,11 @@ use std::time::Duration;
 
 use super::material;
 use crate::composition::{self, Form, Outline, Stretch};
+use crate::energy::Energy;
 use crate::output::{HistoryRow, Status};
 use crate::petsc;
-use crate::scene::{Friction, Method, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
-use crate::solve::Counts;
+use crate::scene::{Friction, Method, Penalty, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
+use crate::solve::{Counts, Work};
 
 /// What is modelled and what is not: (modelled, not modelled).
 pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
@@ -38,10 +39,6 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
         }
         None => no.push("friction (symmetric solver)".to_owned()),
     }
-    let softer = scene.layer().map_or_else(String::new, |layer| {
-        let added = added_compliance(scene.contact.penalty, layer, &scene.materials);
-        format!(" ({added:.2e} of the compliance to the wave the layer is stiffest to)")
-    });
     let method = match scene.contact.method {
         Method::Penalty => String::new(),
         Method::Augmented { augmentation_tolerance } => {
@@ -49,13 +46,15 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
         }
     };
     yes.push(format!(
-        "contact: {method}penalty of {:.3e} Pa/m{softer}, {} quadrature",
-        scene.contact.penalty,
+        "contact: {method}penalty of {}, {} quadrature",
+        penalty(scene),
         match scene.contact.quadrature {
             Quadrature::Nodal => "nodal",
             Quadrature::Gauss => "two-point Gauss",
         }
     ));
+    let balance = if scene.output.energy { &mut yes } else { &mut no };
+    balance.push("energy balance".to_owned());
     if scene.output.bulk_at.is_empty() {
         no.push("stress recovery and bulk output".to_owned());
     } else {
@@ -63,6 +62,18 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
     }
     no.push("inertia, large strains, thermal effects".to_owned());
     (yes, no)
+}
+
+/// The penalty, and how much it softens a layer.
+fn penalty(scene: &Scene) -> String {
+    match (scene.contact.penalty, scene.layer()) {
+        (Penalty::Stiffness(stiffness), Some(layer)) => {
+            let added = added_compliance(stiffness, layer, &scene.materials);
+            format!("{stiffness:.3e} Pa/m ({added:.2e} of the compliance to the wave the layer is stiffest to)")
+        }
+        (Penalty::Stiffness(stiffness), None) => format!("{stiffness:.3e} Pa/m"),
+        (Penalty::Tolerance(tolerance), _) => format!("that softens the body by {tolerance} at most"),
+    }
 }
 
 /// What `mpjr check` prints after the resolved scene.
@@ -75,6 +86,9 @@ pub fn plan(scene: &Scene, outline: &Outline) -> String {
     let _ = writeln!(text, "not modelled:  {}", no.join("\n               "));
     text += &material::lines(scene);
     let _ = writeln!(text, "mesh:          {}, {} unknowns", extent(scene, outline), outline.unknowns);
+    if let Some(penalty) = outline.penalty {
+        let _ = writeln!(text, "penalty:       {penalty:.3e} Pa/m");
+    }
     let _ = writeln!(
         text,
         "loading:       {} phase(s), {} steps, {:.6} s",
@@ -145,6 +159,12 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
         0 => String::new(),
         pieces => format!(", {pieces} of them pieces of steps that were cut"),
     };
+    let sparse = match counts.work {
+        Work { factorisations: 0, .. } => String::new(),
+        Work { factorisations, solves, .. } => {
+            format!("; {factorisations} sparse factorisation(s), {solves} solves with them")
+        }
+    };
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{:<15}{} at t = {:.6} s", "status:", status.as_str(), last.time);
@@ -161,11 +181,14 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
         "{:<15}{:.4} of the face, {:.4} of it sticking; penetration {:.1e} m, slip while sticking {:.1e} m",
         "final contact:", last.contact_fraction, last.stick_fraction, last.max_penetration, last.stuck_slip
     );
+    if scene.output.energy {
+        let _ = writeln!(text, "{:<15}{}", "energy:", balance(&last.energy));
+    }
     let augmented = match counts.augmentations {
         0 => String::new(),
         again => format!(", {again} augmentations"),
     };
-    let work = format!("{} steps{pieces}{augmented}, {} Newton iterations", counts.steps, counts.newton);
+    let work = format!("{} steps{pieces}{augmented}, {} Newton iterations{sparse}", counts.steps, counts.newton);
     let _ = writeln!(text, "{:<15}{work}", "work:");
     let _ = writeln!(
         text,
@@ -183,22 +206,48 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     text
 }
 
+/// The energy balance as a sum.
+fn balance(energy: &Energy) -> String {
+    let Energy { external_work, stored, viscoelastic_dissipation, friction_dissipation, penalty, imbalance } = energy;
+    format!(
+        "work {external_work:.3e} = stored {stored:.3e} + arms {viscoelastic_dissipation:.3e} + friction \
+         {friction_dissipation:.3e}\n{:15}+ penalty {penalty:.3e} + imbalance {imbalance:.3e} J/m",
+        ""
+    )
+}
+
 /// How the scene is solved, and why.
 fn strategy(scene: &Scene) -> String {
     let asked = if scene.solver.strategy == Strategy::Auto { "auto picked " } else { "" };
-    match composition::form(scene) {
-        Form::Monolithic => "monolithic: all unknowns in one sparse system, factorised at each Newton iteration".into(),
-        Form::Following => format!(
-            "{asked}condensed: all moduli keep their ratios, so that the interior follows the contact\n\
-             {:15}face; Newton runs on the nodes in contact",
-            ""
-        ),
-        Form::Remembering => format!(
-            "{asked}condensed: not all moduli relax alike, so that the interior has a memory of its own; one\n\
-             {:15}factorisation per step length, two interior solves per step, Newton on the nodes in contact",
-            ""
-        ),
-    }
+    let by_wave = scene.period().is_some();
+    let lines = match composition::form(scene) {
+        Form::Monolithic => vec![
+            "monolithic: all unknowns in one sparse system; the bulk is factorised once per step length, and Newton",
+            "solves with it and with the compliance of the nodes that came into contact so far",
+        ],
+        Form::Following => {
+            let mut lines = vec![
+                "condensed: all moduli keep their ratios, so that the interior follows the contact",
+                "face; Newton runs on the nodes in contact",
+            ];
+            if by_wave {
+                lines.push(
+                    "periodic layer: the face's compliance is had wavenumber by wavenumber, without a sparse matrix",
+                );
+            }
+            lines
+        }
+        Form::Remembering if by_wave => vec![
+            "condensed: not all moduli relax alike, so that the interior has a memory of its own;",
+            "periodic layer: it is solved for wavenumber by wavenumber (by the first rank alone), once per step,",
+            "without a sparse matrix; Newton runs on the nodes in contact",
+        ],
+        Form::Remembering => vec![
+            "condensed: not all moduli relax alike, so that the interior has a memory of its own; one",
+            "factorisation per step length, two interior solves per step, Newton on the nodes in contact",
+        ],
+    };
+    format!("{asked}{}", lines.join(&format!("\n{:15}", "")))
 }
 
 /// A rough cost, from measured times: within a factor of three on a recent core.
@@ -214,24 +263,25 @@ impl Estimate {
         let unknowns = outline.unknowns as f64;
         let face = 2.0 * (outline.face.edges + 1) as f64;
         let newton = 4.0;
-        // Nested dissection in the plane: n^1.5 operations, n log n entries; half of both when symmetric.
+        // Nested dissection in the plane: n^1.5 operations, n log n entries; about half of both when symmetric.
         let entries = |symmetry: f64| 8.0 * 5.0 * unknowns * unknowns.max(2.0).log2() * symmetry;
         let (matrix, vector) = (18.0 * 12.0 * unknowns, 8.0 * unknowns);
         let arms = (scene.materials.iter().map(|material| material.arms.len()).sum::<usize>() + 4) as f64;
         // Half of the face in contact: a small dense factorisation and some products with the compliance.
         let contact = newton * (2e-10 * (face / 2.0).powi(3).min(face.powi(2) * 300.0) + 3e-9 * face * face);
-        let compliance = 8.0 * face * face;
-        let symmetry = if scene.friction.is_some() { 1.0 } else { 0.6 };
+        let solve = 3e-7 * unknowns * (1.0 + 0.05 * unknowns.max(2.0).log2());
+        let by_wave = scene.period().is_some();
+        let compliance = if by_wave { 0.0 } else { 8.0 * face * face };
         let (step, memory) = match composition::form(scene) {
             Form::Monolithic => (
-                newton * (1.3e-8 * unknowns.powf(1.5) * symmetry + 1.0e-6 * unknowns),
-                entries(symmetry) + 3.0 * matrix + arms * vector,
+                newton * (2.0 * solve + 1.0e-7 * unknowns) + contact,
+                8.0 * face * face + entries(0.6) + 4.0 * matrix + arms * vector,
             ),
             Form::Following => (contact, compliance + 80.0 * unknowns),
-            Form::Remembering => (
-                contact + 2.0 * 6e-7 * unknowns * (1.0 + 0.05 * unknowns.max(2.0).log2()),
-                compliance + entries(0.6) + 3.0 * matrix + arms * vector,
-            ),
+            Form::Remembering if by_wave => {
+                (contact + 3e-8 * unknowns * arms, (12.0 + arms) * vector + 80.0 * unknowns)
+            }
+            Form::Remembering => (contact + 2.0 * solve, compliance + entries(0.6) + 3.0 * matrix + arms * vector),
         };
         Self { step, memory: 5e7 + memory }
     }

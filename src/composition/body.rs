@@ -1,9 +1,9 @@
 //! From the scene's body and materials to a mesh, its regions and the parts of the bulk.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use mpi::topology::SimpleCommunicator;
-use nalgebra::Vector2;
 
 use crate::bulk::{Bulk, Part, Series};
 use crate::element::Quadrilateral;
@@ -40,6 +40,8 @@ pub struct Outline {
     pub unknowns: usize,
     /// Quadrilaterals and triangles.
     pub cells: [usize; 2],
+    /// Of the contact, Pa/m, where the mesh decides it.
+    pub penalty: Option<f64>,
 }
 
 /// The contact face along x.
@@ -62,12 +64,14 @@ pub fn outline(scene: &Scene, file: &Path) -> Result<Outline> {
             face: Stretch::of_layer(layer),
             unknowns: layer.unknowns(),
             cells: [layer.cells[0] * layer.cells[1], 0],
+            penalty: None,
         }),
         scene::Body::Mesh(mesh) => {
             let mesh = file_mesh(&bytes(mesh)?, mesh, scene, file)?;
             let triangles = mesh.cells.iter().filter(|cell| matches!(cell, Cell::Triangle(_))).count();
             let cells = [mesh.cells.len() - triangles, triangles];
-            Ok(Outline { face: Stretch::of(scene, &mesh.face), unknowns: mesh.free_components(), cells })
+            let penalty = scene.contact.penalty.stiffness().is_none().then(|| penalty(scene, &mesh));
+            Ok(Outline { face: Stretch::of(scene, &mesh.face), unknowns: mesh.free_components(), cells, penalty })
         }
     }
 }
@@ -96,6 +100,14 @@ impl Stretch {
     /// The mean length of an edge along x, m.
     pub fn cell(&self) -> f64 {
         self.width() / self.edges as f64
+    }
+}
+
+/// The mesh of the scene, of a .msh file with these bytes where the scene wants one.
+pub fn mesh_of(bytes: &[u8], scene: &Scene) -> Result<Mesh> {
+    match &scene.body {
+        scene::Body::Layer(layer) => Ok(layer_mesh(layer, scene)),
+        scene::Body::Mesh(mesh) => file_mesh(bytes, mesh, scene, &mesh.file),
     }
 }
 
@@ -139,6 +151,13 @@ fn file_mesh(bytes: &[u8], mesh: &MeshFile, scene: &Scene, file: &Path) -> Resul
         Error::scene(file, key, reason)
     })?;
     depth_allows(&built, scene, file)?;
+    match penalty(scene, &built) {
+        penalty if penalty.is_finite() && penalty > 0.0 => {}
+        penalty => {
+            let reason = format!("gives a penalty of {penalty:?} Pa/m; give another");
+            return Err(Error::scene(file, "contact.tolerance", reason));
+        }
+    }
     Ok(built)
 }
 
@@ -163,20 +182,37 @@ fn unknown(file: &str, role: Role, roles: &Roles, known: &[String]) -> String {
 
 /// The indenter does not pass the lowest point of the body.
 fn depth_allows(mesh: &Mesh, scene: &Scene, file: &Path) -> Result<()> {
-    let range = |list: &mut dyn Iterator<Item = &Vector2<f64>>| {
-        list.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), node| (low.min(node.y), high.max(node.y)))
-    };
-    let (low, _) = range(&mut mesh.nodes.iter());
-    let (_, top) = range(&mut mesh.face.unknown.iter().map(|&node| &mesh.nodes[node as usize]));
-    let depth = top - low;
-    match scene.phases.iter().find(|phase| phase.approach.is_some_and(|approach| approach >= depth)) {
+    let height = height(mesh);
+    match scene.phases.iter().find(|phase| phase.approach.is_some_and(|approach| approach >= height)) {
         Some(phase) => Err(Error::scene(
             file,
             format!("phase.{}.approach", phase.name),
-            format!("must be less than the height of the body below its contact face ({depth:.6e} m)"),
+            format!("must be less than the height of the body below its contact face ({height:.6e} m)"),
         )),
         None => Ok(()),
     }
+}
+
+/// From the lowest node to the highest of the contact face, m.
+fn height(mesh: &Mesh) -> f64 {
+    let low = mesh.nodes.iter().map(|node| node.y).fold(f64::INFINITY, f64::min);
+    let face = mesh.face.unknown.iter().map(|&node| mesh.nodes[node as usize].y);
+    face.fold(f64::NEG_INFINITY, f64::max) - low
+}
+
+/// The stiffness of the contact, Pa/m; from the mesh of the scene where it says a tolerance.
+pub fn penalty(scene: &Scene, mesh: &Mesh) -> f64 {
+    let tolerance = match scene.contact.penalty {
+        scene::Penalty::Stiffness(stiffness) => return stiffness,
+        scene::Penalty::Tolerance(tolerance) => tolerance,
+    };
+    let edge = mesh.face.edges.iter().map(|edge| edge.length).fold(f64::INFINITY, f64::min);
+    let mut at_face = vec![false; mesh.unknown_nodes()];
+    mesh.face.unknown.iter().for_each(|&node| at_face[node as usize] = true);
+    let touches = |cell: usize| mesh.cell_unknowns(cell).corners().iter().any(|&node| at_face[node as usize]);
+    let regions: BTreeSet<u16> = (0..mesh.cells.len()).filter(|&cell| touches(cell)).map(|c| mesh.regions[c]).collect();
+    let materials: Vec<_> = regions.iter().map(|&region| &scene.materials[usize::from(region)]).collect();
+    scene::penalty_on_mesh(tolerance, [edge, height(mesh)], &materials)
 }
 
 /// What the scene's quadrilaterals are.

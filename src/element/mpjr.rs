@@ -177,7 +177,7 @@ mod tests {
             ] {
                 let resistance = Resistance { penalty: 1e6, multiplier };
                 let at = |u: Vector2<f64>| {
-                    let slip = Slip { rate: drive - u.x / dt, dt, stuck };
+                    let slip = Slip { rate: drive - u.x / dt, dt, stuck, resolution: 0.0 };
                     traction(Motion { clearance, normal: u.y, slip }, resistance, law)
                 };
                 let u = Vector2::new(ut, un);

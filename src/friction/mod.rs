@@ -63,6 +63,15 @@ impl Friction {
         }
     }
 
+    /// The part of a step's slip, m, that is stored and not dissipated, of a point whose slip while sticking came to
+    /// `stuck`.
+    pub fn stored(&self, slip: Slip, stuck: f64) -> f64 {
+        match self {
+            Self::CoulombTanh(_) => 0.0,
+            Self::ElasticSlip(_) => stuck - slip.stuck,
+        }
+    }
+
     /// The slip rate, m/s, at which a point of the contact may be expected to go on from an accepted state when the
     /// indenter's is `drive`; none where friction does not answer to it.
     pub fn expected(&self, slip: Slip, drive: f64) -> Option<f64> {
@@ -118,7 +127,7 @@ mod tests {
     fn bounded_by_coulomb_and_odd() {
         for law in laws() {
             for rate in [0.0, 1e-300, 1e-9, 1e-6, 1e-3, 1.0, 1e9, f64::MAX] {
-                let at = |rate, stuck| law.shear(3.0, Slip { rate, dt: 0.1, stuck });
+                let at = |rate, stuck| law.shear(3.0, Slip { rate, dt: 0.1, stuck, resolution: 0.0 });
                 let (plus, minus) = (at(rate, 3e-8), at(-rate, -3e-8));
                 assert!(plus.shear.abs() <= law.coefficient() * 3.0 && plus.shear == -minus.shear);
                 assert!(plus.by_rate >= 0.0 && plus.by_rate.is_finite() && plus.by_rate == minus.by_rate);
@@ -132,8 +141,10 @@ mod tests {
     fn derivatives_are_those_of_the_traction() {
         for law in laws() {
             for (rate, stuck) in [(0.0, 0.0), (4e-7, 3e-8), (-4e-7, 9e-8), (2e-6, 9e-8), (-5e-6, 1e-7), (3e-8, -1e-7)] {
-                let at = |dp: f64, dw: f64| law.shear(3.0 + dp, Slip { rate: rate + dw, dt: 0.1, stuck }).shear;
-                let exact = law.shear(3.0, Slip { rate, dt: 0.1, stuck });
+                let at = |dp: f64, dw: f64| {
+                    law.shear(3.0 + dp, Slip { rate: rate + dw, dt: 0.1, stuck, resolution: 0.0 }).shear
+                };
+                let exact = law.shear(3.0, Slip { rate, dt: 0.1, stuck, resolution: 0.0 });
                 let by_pressure = (at(1e-3, 0.0) - at(-1e-3, 0.0)) / 2e-3;
                 let by_rate = (at(0.0, 1e-11) - at(0.0, -1e-11)) / 2e-11;
                 assert!((by_pressure - exact.by_pressure).abs() < 1e-9, "{law:?} {rate} {stuck}");
@@ -147,8 +158,8 @@ mod tests {
     fn a_step_that_is_over_keeps_its_traction() {
         for law in laws() {
             for (rate, stuck) in [(4e-7, 3e-8), (-4e-7, 9e-8), (2e-6, 9e-8), (-5e-6, 1e-7)] {
-                let end = law.shear(3.0, Slip { rate, dt: 0.1, stuck });
-                let after = law.shear(3.0, Slip { rate, dt: 0.0, stuck: end.stuck });
+                let end = law.shear(3.0, Slip { rate, dt: 0.1, stuck, resolution: 0.0 });
+                let after = law.shear(3.0, Slip { rate, dt: 0.0, stuck: end.stuck, resolution: 0.0 });
                 assert_eq!((after.shear, after.stuck, after.sticks), (end.shear, end.stuck, end.sticks));
             }
         }

@@ -105,3 +105,40 @@ impl Augmentation {
         self.attempt = None;
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    const PLACEMENT: Placement =
+        Placement { approach: 1e-3, sliding: 0.0, sliding_rate: 0.0, approach_rate: 0.0, dt: 0.1, resolution: 0.0 };
+
+    /// Two points on springs of compliance C, pressed 1 mm deep: p = (lambda + alpha D)/(1 + alpha C), in the end D/C.
+    #[test]
+    fn presses_springs_all_the_way() {
+        let compliance = [1e-4, 1e-6];
+        let mut augmentation = Augmentation::new(1e-7, 1e4, 2);
+        augmentation.attempt(PLACEMENT);
+        let solve = |multipliers: &Multipliers| -> Vec<f64> {
+            let Multipliers { pressure, penalty } = multipliers;
+            let at = |i: usize| (pressure[i] + penalty * 1e-3) / (1.0 + penalty * compliance[i]);
+            vec![at(0), at(1)]
+        };
+        let mut rounds = 0;
+        while augmentation.update(&solve(augmentation.multipliers()), 1e-3).unwrap() {
+            rounds += 1;
+        }
+        assert!(rounds <= 12, "{rounds}");
+        for (pressure, c) in solve(augmentation.multipliers()).iter().zip(compliance) {
+            assert!((pressure * c / 1e-3 - 1.0).abs() < 1e-6, "{pressure}");
+        }
+        // What was not committed is forgotten in another step, what was is where it begins.
+        augmentation.attempt(Placement { dt: 0.2, ..PLACEMENT });
+        assert_eq!(augmentation.multipliers(), &Multipliers { pressure: vec![0.0; 2], penalty: 1e4 });
+        assert!(augmentation.update(&[1.0, 2.0], 1e-3).unwrap());
+        augmentation.commit();
+        augmentation.attempt(PLACEMENT);
+        assert_eq!(augmentation.multipliers().pressure, [1.0, 2.0]);
+    }
+}

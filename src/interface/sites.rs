@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::Surface;
-use crate::element::mpjr::{self, Frame, Motion, Over, Quadrature};
+use crate::element::mpjr::{self, Frame, Motion, Over, Quadrature, Traction};
 use crate::error::Result;
 use crate::loading::Placement;
 use crate::mesh::Face;
@@ -21,6 +21,15 @@ pub struct Point {
     /// How far below the highest node of the face, m.
     pub recess: f64,
     pub frame: Frame,
+}
+
+impl Point {
+    /// What it adds to N, Q and integral of p dh/dx, N/m: what the indenter works with as it moves down, and along.
+    pub fn forces(&self, traction: &Traction, slope: f64) -> [f64; 3] {
+        let force = self.frame.tr_mul(&traction.residual());
+        let dx = self.weight * self.frame[(0, 0)];
+        [self.weight * force.y, dx * traction.shear.shear, dx * traction.pressure * slope]
+    }
 }
 
 /// Points with the profile over them and the memory of friction.

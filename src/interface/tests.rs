@@ -19,7 +19,7 @@ fn with_law(quadrature: Quadrature, sides: Sides, friction: Friction) -> Interfa
 }
 
 fn placement() -> Placement {
-    Placement { approach: 0.012, sliding: 0.13, sliding_rate: 0.05, approach_rate: 0.02, dt: 0.1 }
+    Placement { approach: 0.012, sliding: 0.13, sliding_rate: 0.05, approach_rate: 0.02, dt: 0.1, resolution: 0.0 }
 }
 
 /// A wavy surface whose rates follow its displacements at `shift`.
@@ -92,6 +92,25 @@ fn tangent_is_the_derivative_of_the_residual() {
     }
 }
 
+/// The same with the memory of a slip that was accepted, where some points stick on and others begin to slip.
+#[test]
+fn tangent_with_memory() {
+    let law = Friction::ElasticSlip(ElasticSlip { coefficient: 0.3, elastic_slip: 1.01e-2 });
+    for (quadrature, sides) in [(Quadrature::Nodal, Sides::Free), (Quadrature::Gauss, Sides::Periodic)] {
+        let mut interface = with_law(quadrature, sides, law);
+        let nodes = interface.face.x.len();
+        let surface = surface(nodes, 10.0, (0, 0.0));
+        interface.commit(placement(), &surface).unwrap();
+        let totals = interface.totals(placement(), &surface).unwrap();
+        assert!(totals.stick_fraction > 0.1 && totals.stick_fraction < 0.8, "{}", totals.stick_fraction);
+        assert_tangent(&mut interface, placement());
+        // Once the step is over, the tractions are those that it ended with.
+        interface.commit(placement(), &surface).unwrap();
+        let over = interface.totals(Placement { dt: 0.0, ..placement() }, &surface).unwrap();
+        assert_eq!(over, totals);
+    }
+}
+
 fn assert_tangent(interface: &mut Interface, placement: Placement) {
     let (nodes, shift, step) = (interface.face.x.len(), 10.0, 1e-7);
     let mut tangent = Tangent::default();
@@ -124,7 +143,8 @@ fn assert_tangent(interface: &mut Interface, placement: Placement) {
 fn totals_integrate_the_tractions() {
     for quadrature in [Quadrature::Nodal, Quadrature::Gauss] {
         let mut interface = interface(quadrature, Sides::Periodic);
-        let place = Placement { approach: 0.1, sliding: 0.0, sliding_rate: 1e3, approach_rate: 0.0, dt: 0.1 };
+        let place =
+            Placement { approach: 0.1, sliding: 0.0, sliding_rate: 1e3, approach_rate: 0.0, dt: 0.1, resolution: 0.0 };
         let totals = interface.totals(place, &Surface::at_rest(8)).unwrap();
         // p = alpha (D - g0 (1 - cos)), whose mean is alpha (D - g0).
         assert!((totals.normal_force - 50.0 * 0.09).abs() < 1e-13);

@@ -9,6 +9,7 @@
 //! and as `e^{iwt}` in time. The profile h(x) >= 0 is the indenter's elevation above its lowest point; slid by s it
 //! stands at h(x - s), and the hysteretic force is the integral of p dh/dx.
 
+pub mod half_disk;
 pub mod layer;
 pub mod line_contact;
 pub mod periodic;

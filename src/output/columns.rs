@@ -1,5 +1,7 @@
 //! The one place that names what is recorded: history columns, interface fields, bulk fields. A new column is one line.
 
+use crate::energy::Energy;
+
 /// One row of `/history`: the state at the end of an accepted step (row 0: the unloaded state). Forces are per unit
 /// thickness (N/m). The default is the unloaded state at t = 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -32,23 +34,6 @@ pub struct HistoryRow {
     pub newton_iterations: usize,
     /// The energy balance; recorded only when [`Plan::energy`](super::Plan::energy) is set.
     pub energy: Energy,
-}
-
-/// The energy balance, J/m, cumulative from t = 0.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Energy {
-    /// Supplied by the indenter.
-    pub external_work: f64,
-    /// Stored in the springs of the layer.
-    pub stored: f64,
-    /// Dissipated in the Prony arms.
-    pub viscoelastic_dissipation: f64,
-    /// Dissipated by friction.
-    pub friction_dissipation: f64,
-    /// Stored in the penalty.
-    pub penalty: f64,
-    /// What the others leave over.
-    pub imbalance: f64,
 }
 
 /// One row of the fields under `/interface`; every field has one value for each node of the contact face, in the

@@ -37,7 +37,7 @@ mod xdmf;
 
 use std::time::SystemTime;
 
-pub use columns::{Energy, HistoryRow, InterfaceFrame};
+pub use columns::{HistoryRow, InterfaceFrame};
 pub use recorder::Recorder;
 pub use resume::{Left, left};
 

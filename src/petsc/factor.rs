@@ -3,6 +3,9 @@
 use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 
+use mpi::topology::AsCommunicator;
+use mpi::traits::AsRaw;
+
 use super::error::check;
 use super::ffi;
 use super::matrix::Matrix;
@@ -26,6 +29,27 @@ impl Cholesky {
     pub fn solve(&self, b: &Vector, x: &mut Vector) -> Result<()> {
         // SAFETY: a factorised matrix and two distinct vectors of its layout.
         check(unsafe { ffi::MatSolve(self.raw, b.raw(), x.raw()) })
+    }
+
+    /// Gives matrix^-1 e for unit vectors e, with their index: `rows` has the row of each, and whether this rank owns
+    /// it. All at once. Collective.
+    pub fn solve_units(
+        &self,
+        comm: &impl AsCommunicator,
+        rows: &[(i32, bool)],
+        mut take: impl FnMut(usize, &Vector) -> Result<()>,
+    ) -> Result<()> {
+        let mut local = 0;
+        // SAFETY: a live matrix and a place for the number; rows and columns are distributed alike.
+        unsafe { check(ffi::MatGetLocalSize(self.raw, &mut local, null_mut()))? };
+        let (mut right, solution) = (Dense::new(comm, local, rows.len())?, Dense::new(comm, local, rows.len())?);
+        for (column, &(row, _)) in rows.iter().enumerate().filter(|(_, (_, owned))| *owned) {
+            right.insert(row, column as i32, 1.0)?;
+        }
+        right.assemble()?;
+        // SAFETY: a factorised matrix and two distinct matrices of as many rows.
+        check(unsafe { ffi::MatMatSolve(self.raw, right.raw, solution.raw) })?;
+        (0..rows.len()).try_for_each(|column| solution.with_column(column as i32, |vector| take(column, vector)))
     }
 
     /// The factorisation, and the rows and columns `kept` of matrix^-1, column-major: the inverse of the Schur
@@ -74,6 +98,59 @@ impl Cholesky {
     fn numeric(&self, matrix: &Matrix) -> Result<()> {
         // SAFETY: the factor was made for this matrix.
         check(unsafe { ffi::MatCholeskyFactorNumeric(self.raw, matrix.raw(), &default_settings()?) })
+    }
+}
+
+/// A dense matrix whose rows are distributed like a vector.
+struct Dense {
+    raw: ffi::Mat,
+}
+
+impl Dense {
+    /// Zeros, with `local` rows on this rank.
+    fn new(comm: &impl AsCommunicator, local: ffi::PetscInt, columns: usize) -> Result<Self> {
+        let (mut raw, columns) = (null_mut(), columns as ffi::PetscInt);
+        // SAFETY: a live communicator and a place for the handle; PETSc allocates and clears the values.
+        unsafe {
+            let comm = comm.as_communicator().as_raw();
+            check(ffi::MatCreateDense(comm, local, -1, -1, columns, null_mut(), &mut raw))?;
+        }
+        let mut matrix = Self { raw };
+        matrix.assemble()?;
+        Ok(matrix)
+    }
+
+    /// Not collective; [`Self::assemble`] afterwards.
+    fn insert(&mut self, row: i32, column: i32, value: f64) -> Result<()> {
+        // SAFETY: one row, one column, one value.
+        check(unsafe { ffi::MatSetValues(self.raw, 1, &row, 1, &column, &value, ffi::InsertMode_INSERT_VALUES) })
+    }
+
+    fn assemble(&mut self) -> Result<()> {
+        // SAFETY: a live matrix.
+        unsafe {
+            check(ffi::MatAssemblyBegin(self.raw, ffi::MatAssemblyType_MAT_FINAL_ASSEMBLY))?;
+            check(ffi::MatAssemblyEnd(self.raw, ffi::MatAssemblyType_MAT_FINAL_ASSEMBLY))
+        }
+    }
+
+    /// Lends a column.
+    fn with_column(&self, column: i32, look: impl FnOnce(&Vector) -> Result<()>) -> Result<()> {
+        let mut vector = null_mut();
+        // SAFETY: the column is lent until it is given back, which happens whatever `look` returns.
+        unsafe {
+            check(ffi::MatDenseGetColumnVecRead(self.raw, column, &mut vector))?;
+            let outcome = look(&Vector::borrow(vector));
+            check(ffi::MatDenseRestoreColumnVecRead(self.raw, column, &mut vector))?;
+            outcome
+        }
+    }
+}
+
+impl Drop for Dense {
+    fn drop(&mut self) {
+        // SAFETY: this handle owns the matrix.
+        unsafe { ffi::MatDestroy(&mut self.raw) };
     }
 }
 

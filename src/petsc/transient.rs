@@ -2,7 +2,7 @@
 
 use std::os::raw::c_void;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::ptr::null_mut;
+use std::ptr::{null, null_mut};
 
 use mpi::topology::AsCommunicator;
 use mpi::traits::AsRaw;
@@ -78,7 +78,7 @@ pub trait Implicit {
     fn multiply(&mut self, _v: &Vector, _product: &mut Vector) -> Result<()> {
         Err(Error::Internal("the tangent of this problem is a matrix".into()))
     }
-    /// x = tangent^-1 b, or nearly so, with the last tangent; for [`Linear::Own`].
+    /// x = tangent^-1 b, or nearly so, with the last tangent.
     fn solve(&mut self, _b: &Vector, _x: &mut Vector) -> Result<()> {
         Err(Error::Internal("the tangent of this problem is a matrix".into()))
     }
@@ -99,13 +99,11 @@ pub trait Implicit {
 /// How the linear systems are solved, unless PETSc options say otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Linear {
-    /// The tangent is symmetric positive definite: Cholesky factorisation by MUMPS.
-    Cholesky,
-    /// LU factorisation by MUMPS.
-    Lu,
-    /// By the problem itself, exactly.
+    /// By FGMRES, with the problem's own solve as preconditioner; the tangent is a matrix.
+    Preconditioned,
+    /// By the problem itself, exactly; the tangent is a [`Matrix::shell`].
     Own,
-    /// By GMRES, with the problem's own solve as preconditioner.
+    /// By GMRES, with the problem's own solve as preconditioner; the tangent is a [`Matrix::shell`].
     OwnIterative,
 }
 
@@ -116,13 +114,15 @@ pub struct Settings {
     pub linear: Linear,
     /// Newton iterations per attempt before the step is cut.
     pub max_newton: usize,
+    /// Whether Newton's steps are taken whole, or as long as makes the residual least.
+    pub whole_steps: bool,
 }
 
 /// A TS with its SNES, KSP and PC.
 pub struct Integrator {
     ts: ffi::TS,
-    /// The problem multiplies and solves by its own tangent.
-    own: bool,
+    /// The tangent is a shell: the problem multiplies by it.
+    shell: bool,
 }
 
 /// What the callbacks reach through PETSc's context pointer.
@@ -137,19 +137,19 @@ struct Context<'a, P> {
 }
 
 impl Integrator {
-    /// Backward Euler with Newton's method and a direct solver (MUMPS), changed by whatever PETSc options are set, for a
+    /// Backward Euler with Newton's method and the problem's own linear solver, changed by whatever PETSc options are set, for a
     /// problem whose tangent is `jacobian`.
     ///
     /// # Errors
     /// [`Error::Usage`] when PETSc does not take the value of an option.
     pub fn new(comm: &impl AsCommunicator, settings: Settings, jacobian: &mut Matrix) -> Result<Self> {
         let mut ts = null_mut();
-        let own = matches!(settings.linear, Linear::Own | Linear::OwnIterative);
+        let shell = matches!(settings.linear, Linear::Own | Linear::OwnIterative);
         let (mut snes, mut search, mut ksp, mut pc) = (null_mut(), null_mut(), null_mut(), null_mut());
         // SAFETY: places for the handles; those got from TS stay TS's own.
         unsafe {
             check(ffi::TSCreate(comm.as_communicator().as_raw(), &mut ts))?;
-            let integrator = Self { ts, own };
+            let integrator = Self { ts, shell };
             check(ffi::TSSetProblemType(ts, ffi::TSProblemType_TS_NONLINEAR))?;
             check(ffi::TSSetType(ts, c"beuler".as_ptr()))?;
             check(ffi::TSSetExactFinalTime(ts, ffi::TSExactFinalTimeOption_TS_EXACTFINALTIME_STEPOVER))?;
@@ -164,25 +164,28 @@ impl Integrator {
             check(ffi::TSGetSNES(ts, &mut snes))?;
             check(ffi::SNESSetTolerances(snes, 0.0, 0.0, 0.0, settings.max_newton as i32, -1))?;
             check(ffi::SNESGetLineSearch(snes, &mut search))?;
-            // Where friction turns between stick and slip the norm must rise before it falls: backtracking stalls and a
-            // minimiser along the step takes twice the iterations. What overruns friction is bent by the problem.
-            check(ffi::SNESLineSearchSetType(search, c"basic".as_ptr()))?;
+            // Where friction turns between stick and slip the norm must rise before it falls, and backtracking stalls.
+            let line_search = if settings.whole_steps { c"basic" } else { c"l2" };
+            check(ffi::SNESLineSearchSetType(search, line_search.as_ptr()))?;
             check(ffi::SNESGetKSP(snes, &mut ksp))?;
             check(ffi::KSPGetPC(ksp, &mut pc))?;
-            let (method, preconditioner) = match settings.linear {
-                Linear::Cholesky => (c"preonly", c"cholesky"),
-                Linear::Lu => (c"preonly", c"lu"),
-                Linear::Own => (c"preonly", c"shell"),
-                Linear::OwnIterative => (c"gmres", c"shell"),
+            let (method, reduction) = match settings.linear {
+                // The preconditioner is nearly exact, so that this is one iteration, or two.
+                Linear::Preconditioned => (c"fgmres", 1e-12),
+                Linear::Own => (c"preonly", 1e-9),
+                Linear::OwnIterative => (c"gmres", 1e-9),
             };
             check(ffi::KSPSetType(ksp, method.as_ptr()))?;
-            check(ffi::KSPSetTolerances(ksp, 1e-9, -2.0, -2.0, -2))?;
-            check(ffi::PCSetType(pc, preconditioner.as_ptr()))?;
-            if matches!(settings.linear, Linear::Cholesky | Linear::Lu) {
-                check(ffi::PCFactorSetMatSolverType(pc, c"mumps".as_ptr()))?;
-            }
+            check(ffi::KSPSetTolerances(ksp, reduction, -2.0, -2.0, -2))?;
+            check(ffi::PCSetType(pc, c"shell".as_ptr()))?;
             check(ffi::TSSetFromOptions(ts)).map_err(refused)?;
-            if !own {
+            if !shell {
+                let mut package = null();
+                check(ffi::PCFactorGetMatSolverType(pc, &mut package))?;
+                if package.is_null() {
+                    // PETSc's own factorisations are far slower.
+                    check(ffi::PCFactorSetMatSolverType(pc, c"mumps".as_ptr()))?;
+                }
                 // Otherwise the first solve would find out that there is no such solver package.
                 check(ffi::KSPSetOperators(ksp, jacobian.raw(), jacobian.raw()))?;
                 check(ffi::PCFactorSetUpMatSolverType(pc)).map_err(refused)?;
@@ -228,11 +231,15 @@ impl Integrator {
             check(ffi::TSGetSNES(ts, &mut snes))?;
             check(ffi::SNESSetConvergenceTest(snes, Some(convergence::<P>), pointer, None))?;
             check(ffi::SNESSetComputeInitialGuess(snes, Some(guess::<P>), pointer))?;
-            let mut search = null_mut();
+            let (mut search, mut ksp, mut pc) = (null_mut(), null_mut(), null_mut());
             check(ffi::SNESGetLineSearch(snes, &mut search))?;
             check(ffi::SNESLineSearchSetPreCheck(search, Some(limit::<P>), pointer))?;
-            if self.own {
-                let (mut ksp, mut pc) = (null_mut(), null_mut());
+            check(ffi::SNESGetKSP(snes, &mut ksp))?;
+            check(ffi::KSPGetPC(ksp, &mut pc))?;
+            // Nothing where an option chose another preconditioner.
+            check(ffi::PCShellSetContext(pc, pointer))?;
+            check(ffi::PCShellSetApply(pc, Some(solve::<P>)))?;
+            if self.shell {
                 check(ffi::MatShellSetContext(jacobian.raw(), pointer))?;
                 let multiply: unsafe extern "C" fn(_, _, _) -> _ = multiply::<P>;
                 let operation = std::mem::transmute::<
@@ -240,10 +247,6 @@ impl Integrator {
                     unsafe extern "C" fn(),
                 >(multiply);
                 check(ffi::MatShellSetOperation(jacobian.raw(), ffi::MatOperation_MATOP_MULT, Some(operation)))?;
-                check(ffi::SNESGetKSP(snes, &mut ksp))?;
-                check(ffi::KSPGetPC(ksp, &mut pc))?;
-                check(ffi::PCShellSetContext(pc, pointer))?;
-                check(ffi::PCShellSetApply(pc, Some(solve::<P>)))?;
             }
             check(ffi::TSSetTime(ts, now))?;
             check(ffi::TSSetTimeStep(ts, dt))?;
@@ -260,7 +263,8 @@ impl Integrator {
         check(code)?;
         if reason < 0 {
             return Err(Error::Solver(format!(
-                "no convergence in the step to t = {:.6e} s, cut down to {:.3e} s",
+                "no convergence in the step to t = {:.6e} s, cut down to {:.3e} s; more steps, friction regularised less \
+                 sharply or a softer penalty may help",
                 context.step.t, context.step.dt
             )));
         }

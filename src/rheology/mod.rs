@@ -10,7 +10,7 @@ pub mod shift;
 
 pub use band::Band;
 pub use fractional::Fractional;
-pub use memory::{Factors, Memory};
+pub use memory::{Factors, Losses, Memory};
 pub use poisson::Poisson;
 pub use prony::{Arm, Prony};
 pub use shift::Shift;

@@ -110,6 +110,15 @@ impl<'a> Section<'a> {
         self.table.get(key).map(|value| self.whole(key, value, what, range)).transpose()
     }
 
+    /// True or false, or nothing.
+    pub fn optional_flag(&self, key: &str) -> Result<Option<bool>> {
+        match self.table.get(key) {
+            None => Ok(None),
+            Some(Value::Boolean(flag)) => Ok(Some(*flag)),
+            Some(value) => Err(self.must_be(key, "true or false", value)),
+        }
+    }
+
     /// Two whole numbers that must be there.
     pub fn pair(&self, key: &str, what: &str, range: RangeInclusive<usize>) -> Result<[usize; 2]> {
         match self.table.get(key) {

@@ -25,7 +25,7 @@ pub use include::{Load, include, open};
 pub use indenter::{Extend, Indenter, Rms};
 pub(crate) use keys::advice;
 pub use overrides::{get, set};
-pub use penalty::{added_compliance, penalty_for};
+pub use penalty::{added_compliance, penalty_for, penalty_on_mesh};
 pub use read::{from_table, parse, read, read_with};
 
 /// One scene: the layer, its material, the indenter, the contact, the loading history, and what to keep of it.
@@ -184,8 +184,9 @@ pub enum Memory {
 /// How non-penetration is enforced.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Contact {
-    /// Pa/m, > 0: p = -penalty * gap where gap < 0; always resolved (from `tolerance` where the file says that).
-    pub penalty: f64,
+    /// p = -penalty * gap where gap < 0.
+    #[serde(flatten)]
+    pub penalty: Penalty,
     /// Where the interface element evaluates the laws.
     pub quadrature: Quadrature,
     /// What the penalty is for.
@@ -204,6 +205,27 @@ pub enum Method {
         /// The penetration that is left, relative to the displacement of the face; in (0, 1).
         augmentation_tolerance: f64,
     },
+}
+
+/// The stiffness of the contact, or what decides it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub enum Penalty {
+    /// Pa/m, > 0; for a layer always this (from `tolerance` where the file says that).
+    #[serde(rename = "penalty")]
+    Stiffness(f64),
+    /// For a mesh: the share by which it may soften the body, in (0, 1); see [`penalty_on_mesh`].
+    #[serde(rename = "tolerance")]
+    Tolerance(f64),
+}
+
+impl Penalty {
+    /// Pa/m, where it is known without the mesh.
+    pub fn stiffness(&self) -> Option<f64> {
+        match self {
+            Self::Stiffness(stiffness) => Some(*stiffness),
+            Self::Tolerance(_) => None,
+        }
+    }
 }
 
 /// Points of an interface element.
@@ -308,6 +330,8 @@ pub struct Output {
     pub bulk_at: Vec<When>,
     /// Steps between checkpoints; 0 = only on a signal.
     pub checkpoint_every: usize,
+    /// Whether the energy balance is.
+    pub energy: bool,
 }
 
 /// A moment of the loading history.

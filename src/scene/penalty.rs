@@ -13,31 +13,44 @@
 //!
 //! and which is the smaller one for a nearly incompressible layer. Relaxation only makes the body softer. Of several
 //! strata, the shortest wave meets those that begin within its length of the face, and counts as if the stiffest of them
-//! were all there is; the mean pressure meets all of them in series.
+//! were all there is; the mean pressure meets all of them in series. A mesh counts as a layer of its height, of the
+//! stiffest material that has a part of the face, with the shortest edge of the face for its cells.
 
 use super::{Layer, Material};
 
 /// The penalty, Pa/m, that adds the relative compliance `tolerance` to the wave that the layer is stiffest to, and
 /// less to every other: 1 / (tolerance C_zz). `materials` are its strata, top down.
 pub fn penalty_for(tolerance: f64, layer: &Layer, materials: &[Material]) -> f64 {
-    1.0 / (tolerance * smallest_compliance(layer, materials))
+    1.0 / (tolerance * compliance_of_layer(layer, materials))
+}
+
+/// The same for a mesh: the shortest `edge` of its face and its `height` below that, m, and the materials of the face.
+pub fn penalty_on_mesh(tolerance: f64, [edge, height]: [f64; 2], materials: &[&Material]) -> f64 {
+    let compliance = |material: &&Material| smallest_compliance(edge, &[(height, material)]);
+    1.0 / (tolerance * materials.iter().map(compliance).fold(f64::INFINITY, f64::min))
 }
 
 /// The relative compliance that a penalty, Pa/m, adds to the wave that the layer is stiffest to.
 pub fn added_compliance(penalty: f64, layer: &Layer, materials: &[Material]) -> f64 {
-    1.0 / (penalty * smallest_compliance(layer, materials))
+    1.0 / (penalty * compliance_of_layer(layer, materials))
 }
 
 /// m/Pa
-fn smallest_compliance(layer: &Layer, materials: &[Material]) -> f64 {
-    let cell = layer.width / layer.cells[0] as f64;
+fn compliance_of_layer(layer: &Layer, materials: &[Material]) -> f64 {
+    let above: f64 = materials.iter().filter_map(|material| material.thickness).sum();
+    let thickness = |material: &Material| material.thickness.unwrap_or(layer.depth - above);
+    let strata: Vec<_> = materials.iter().map(|material| (thickness(material), material)).collect();
+    smallest_compliance(layer.width / layer.cells[0] as f64, &strata)
+}
+
+/// m/Pa, of strata (thickness in m, material) from the face down, in cells of a length, m.
+fn smallest_compliance(cell: f64, strata: &[(f64, &Material)]) -> f64 {
     let (mut shortest, mut mean, mut above) = (f64::INFINITY, 0.0, 0.0);
-    for material in materials {
+    for (thickness, material) in strata {
         let (g, nu) = (material.shear_modulus, material.poisson_ratio);
         if above < 2.0 * cell {
             shortest = shortest.min((1.0 - nu) * cell / (std::f64::consts::PI * g));
         }
-        let thickness = material.thickness.unwrap_or(layer.depth - above);
         mean += thickness * (1.0 - 2.0 * nu) / (2.0 * g * (1.0 - nu));
         above += thickness;
     }

@@ -12,8 +12,8 @@ use toml::Table;
 
 use super::keys::{self, Quantity, Section};
 use super::{
-    Body, Contact, Friction, Load, Material, Method, Output, Quadrature, Scene, Solver, Source, Strategy, When, checks,
-    include, overrides, penalty_for,
+    Body, Contact, Friction, Load, Material, Method, Output, Penalty, Quadrature, Scene, Solver, Source, Strategy,
+    When, checks, include, overrides, penalty_for,
 };
 use crate::error::{Error, Result};
 
@@ -121,7 +121,7 @@ fn method(section: &Section, quadrature: Quadrature) -> Result<Method> {
 }
 
 /// The penalty, given as itself or as the compliance that it may add.
-fn penalty(section: &Section, body: &Body, materials: &[Material]) -> Result<f64> {
+fn penalty(section: &Section, body: &Body, materials: &[Material]) -> Result<Penalty> {
     const PENALTY: Quantity = Quantity::positive("a positive stiffness in Pa/m");
     const TOLERANCE: Quantity =
         Quantity { what: "a relative tolerance above 0 and below 1", accepts: |value| value > 0.0 && value < 1.0 };
@@ -130,13 +130,13 @@ fn penalty(section: &Section, body: &Body, materials: &[Material]) -> Result<f64
     let tolerance = section.optional_number("tolerance", TOLERANCE)?;
     match (penalty, tolerance) {
         (Some(_), Some(_)) => Err(section.error("tolerance", "give penalty or tolerance, not both")),
-        (Some(penalty), None) => Ok(penalty),
+        (Some(penalty), None) => Ok(Penalty::Stiffness(penalty)),
         (None, Some(tolerance)) => {
             let Body::Layer(layer) = body else {
-                return Err(section.error("tolerance", "is for a [layer]; give penalty, in Pa/m"));
+                return Ok(Penalty::Tolerance(tolerance));
             };
             match penalty_for(tolerance, layer, materials) {
-                penalty if penalty.is_finite() && penalty > 0.0 => Ok(penalty),
+                penalty if penalty.is_finite() && penalty > 0.0 => Ok(Penalty::Stiffness(penalty)),
                 penalty => {
                     Err(section.error("tolerance", format!("gives a penalty of {penalty:?} Pa/m; give another")))
                 }
@@ -184,14 +184,15 @@ fn solver(section: Option<&Section>) -> Result<Solver> {
 fn output(section: Option<&Section>) -> Result<Output> {
     const STEPS: &str = "a whole number of steps, at least 0";
 
-    let default = Output { interface_every: 1, bulk_at: Vec::new(), checkpoint_every: 0 };
+    let default = Output { interface_every: 1, bulk_at: Vec::new(), checkpoint_every: 0, energy: true };
     let Some(section) = section else { return Ok(default) };
-    section.only(&["interface_every", "bulk_at", "checkpoint_every"])?;
+    section.only(&["interface_every", "bulk_at", "checkpoint_every", "energy"])?;
     let count = |key: &str| section.optional_count(key, STEPS, 0..=usize::MAX);
     Ok(Output {
         interface_every: count("interface_every")?.unwrap_or(default.interface_every),
         bulk_at: bulk_at(section)?,
         checkpoint_every: count("checkpoint_every")?.unwrap_or(default.checkpoint_every),
+        energy: section.optional_flag("energy")?.unwrap_or(default.energy),
     })
 }
 

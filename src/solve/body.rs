@@ -114,6 +114,11 @@ impl Body {
         &self.solid
     }
 
+    /// The ranks that it is distributed over.
+    pub fn comm(&self) -> &SimpleCommunicator {
+        &self.comm
+    }
+
     /// Who owns what.
     pub fn numbering(&self) -> &Numbering {
         &self.numbering

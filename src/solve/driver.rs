@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::{Observer, Report, TransientProblem};
+use super::{Observer, Report, TransientProblem, Work};
 use crate::error::{Error, Result};
 use crate::loading::Phase;
 use crate::petsc::{Accepted, Attempt, Implicit, Integrator, Matrix, Next, Step, Vector, Verdict};
@@ -86,6 +86,8 @@ pub struct Counts {
     pub newton: usize,
     /// How often a step was solved again with other multipliers.
     pub augmentations: usize,
+    /// What the problem did for it.
+    pub work: Work,
     /// Residuals and tangents.
     pub assembly: Duration,
     /// What the observer took.
@@ -144,7 +146,7 @@ impl<'a> Driver<'a> {
 
     /// What the run took so far.
     pub fn counts(&self) -> Counts {
-        self.counts
+        Counts { work: self.problem.work(), ..self.counts }
     }
 
     /// The next step, of length `dt`, and how often it may be cut.

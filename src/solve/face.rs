@@ -5,9 +5,10 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::{Contact, Station};
+use crate::energy::FaceEnergy;
 use crate::error::{Error, Result};
 use crate::friction::{Friction, Slip};
-use crate::interface::{Fields, Interface, Residual, Surface, Tangent};
+use crate::interface::{Exchange, Fields, Interface, Residual, Surface, Tangent};
 use crate::loading::{Phase, Placement};
 use crate::petsc::{Gather, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
@@ -26,6 +27,8 @@ pub struct ContactFace {
     /// Their derivatives at the trial state; zero where a component is held.
     pub tangent: Tangent,
     first_norm: f64,
+    /// Only where the energy is asked for.
+    exchange: Option<Exchange>,
 }
 
 /// The face at some state.
@@ -50,7 +53,18 @@ impl ContactFace {
             residual: Residual::new(),
             tangent: Tangent::default(),
             first_norm: 0.0,
+            exchange: None,
         }
+    }
+
+    /// Keeps account of the energy from here on, at rest.
+    pub fn keep_account(&mut self) {
+        self.exchange = Some(Exchange::new(&self.interface));
+    }
+
+    /// The energy that went through at the accepted state, where it is kept account of.
+    pub fn energy(&self) -> Option<FaceEnergy> {
+        self.exchange.as_ref().map(Exchange::energy)
     }
 
     /// The laws on the face.
@@ -206,6 +220,9 @@ impl ContactFace {
         for ((rate, new), old) in surface.rate.iter_mut().zip(&surface.displacement).zip(&before) {
             *rate = (new - old) / step.dt;
         }
+        if let Some(exchange) = &mut self.exchange {
+            exchange.advance(&mut self.interface, placement, surface)?;
+        }
         self.interface.commit(placement, surface)?;
         self.accepted.placement = Placement { dt: 0.0, ..placement };
         self.accepted.scale = self.trial.scale;
@@ -234,6 +251,9 @@ impl ContactFace {
         snapshot.put("face", vec![*approach, *sliding, *sliding_rate, *approach_rate, *resolution, *scale]);
         snapshot.put("face-rate", surface.rate.clone());
         self.interface.save(snapshot);
+        if let Some(exchange) = &self.exchange {
+            exchange.save(snapshot);
+        }
     }
 
     /// Takes the accepted state, whose solution is `u`, from a snapshot.
@@ -243,6 +263,9 @@ impl ContactFace {
         self.accepted.scale = scale;
         snapshot.fill("face-rate", &mut self.accepted.surface.rate)?;
         self.interface.restore(snapshot)?;
+        if let Some(exchange) = &mut self.exchange {
+            exchange.restore(snapshot, self.accepted.placement)?;
+        }
         self.gather.gather(u, &mut self.accepted.surface.displacement)
     }
 

@@ -5,7 +5,9 @@ mod condensed;
 mod driver;
 mod face;
 mod monolithic;
+mod woodbury;
 
+use crate::energy::Energy;
 use crate::error::{Error, Result};
 use crate::interface::{Fields, Interface, Surface, Totals};
 use crate::loading::{Phase, Placement};
@@ -14,8 +16,8 @@ use crate::snapshot::Snapshot;
 
 pub use body::{Body, Moduli, Region, Solid};
 pub use condensed::{
-    Backing, Compliance, Condensed, Following, Interior, LARGE_FACE, PeriodicColumn, Relaxation, Remembering, Source,
-    Station,
+    Backing, Compliance, Condensed, Following, Inside, Interior, LARGE_FACE, Layered, PeriodicColumn, Relaxation,
+    Relaxations, Remembering, Sparse, Station,
 };
 pub use driver::{Counts, Driver, MAX_NEWTON, Position};
 pub use monolithic::Monolithic;
@@ -36,10 +38,8 @@ pub trait TransientProblem {
     fn multiply(&mut self, _v: &Vector, _product: &mut Vector) -> Result<()> {
         Err(Error::Internal("the tangent of this problem is a matrix".into()))
     }
-    /// x = tangent^-1 b; only where the tangent is a [`Matrix::shell`].
-    fn solve(&mut self, _b: &Vector, _x: &mut Vector) -> Result<()> {
-        Err(Error::Internal("the tangent of this problem is a matrix".into()))
-    }
+    /// x = tangent^-1 b, or nearly so.
+    fn solve(&mut self, b: &Vector, x: &mut Vector) -> Result<()>;
     /// Improves on `u`, the accepted state, as the point from which Newton's method begins.
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()>;
     /// Bends a Newton step from `u` to `u` - `decrement`; whether it did.
@@ -53,6 +53,10 @@ pub trait TransientProblem {
     fn augment(&mut self, step: Step, u: &Vector) -> Result<bool>;
     /// Takes the accepted state to the end of an accepted step.
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()>;
+    /// Keeps account of the energy from here on, at rest; `layout` is that of the solution.
+    fn keep_account(&mut self, layout: &Vector) -> Result<()>;
+    /// The energy balance at the accepted state, where it is kept account of.
+    fn energy(&self) -> Option<Energy>;
     /// Adds the accepted state, with the solution `u`, to a snapshot: all that later steps depend on, down to the last
     /// bit.
     fn save(&mut self, u: &Vector, snapshot: &mut Snapshot) -> Result<()>;
@@ -62,6 +66,23 @@ pub trait TransientProblem {
     fn contact(&mut self) -> Result<Contact<'_>>;
     /// The bulk fields at the accepted state `u`.
     fn bulk_fields(&mut self, u: &Vector) -> Result<BulkFields>;
+    /// What it did so far.
+    fn work(&self) -> Work;
+}
+
+/// What a problem did on this rank. The first three are zero for an elastic, frictionless scene without bulk output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Work {
+    /// Fields that carry memory.
+    pub memory_fields: usize,
+    /// Evaluations of the tangential law.
+    pub tangential_laws: usize,
+    /// How often the fields behind the face were recovered.
+    pub recoveries: usize,
+    /// Sparse factorisations while stepping; all are symmetric.
+    pub factorisations: usize,
+    /// Solves with them.
+    pub solves: usize,
 }
 
 /// The contact face at an accepted state.

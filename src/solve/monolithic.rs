@@ -4,8 +4,10 @@ use nalgebra::Matrix2;
 
 use super::body::Body;
 use super::face::ContactFace;
-use super::{BulkFields, Contact, TransientProblem};
+use super::woodbury::Woodbury;
+use super::{BulkFields, Contact, TransientProblem, Work};
 use crate::bulk::Bulk;
+use crate::energy::Energy;
 use crate::error::Result;
 use crate::interface::Interface;
 use crate::loading::Phase;
@@ -20,7 +22,12 @@ pub struct Monolithic {
     /// Per face node: its global node number, and its first local row where this rank owns it.
     rows: Vec<(i32, Option<usize>)>,
     base: Base,
+    inverse: Woodbury,
+    /// Length of the step that the last tangent is for, s.
+    dt: f64,
     tolerance: f64,
+    /// How often bulk fields were asked for.
+    recoveries: usize,
 }
 
 /// The bulk tangent's blocks under the interface's own, at one step length: what the interface's are added to.
@@ -41,13 +48,19 @@ impl Monolithic {
         let held: Vec<_> = unknowns.iter().map(|&unknown| mesh.held[unknown as usize]).collect();
         let indices: Vec<i32> = rows.iter().flat_map(|&(node, _)| [2 * node, 2 * node + 1]).collect();
         let gather = Gather::new(layout, &indices)?;
+        let components =
+            rows.iter().flat_map(|&(node, local)| [0, 1].map(|i| (2 * node + i as i32, local.map(|row| row + i))));
+        let inverse = Woodbury::new(body.comm(), components.collect(), layout)?;
         Ok(Self {
             face: ContactFace::new(interface, gather, &held),
             bulk,
             body,
             rows,
             base: Base { dt: f64::NAN, diagonal: Vec::new(), coupling: Vec::new() },
+            inverse,
+            dt: f64::NAN,
             tolerance,
+            recoveries: 0,
         })
     }
 }
@@ -91,7 +104,13 @@ impl TransientProblem for Monolithic {
                 }
             }
         }
+        self.inverse.renew();
+        self.dt = step.dt;
         tangent.assemble()
+    }
+
+    fn solve(&mut self, b: &Vector, x: &mut Vector) -> Result<()> {
+        self.inverse.solve((&self.bulk, self.dt), &mut self.face, b, x)
     }
 
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
@@ -136,6 +155,16 @@ impl TransientProblem for Monolithic {
         self.face.commit(step, u)
     }
 
+    fn keep_account(&mut self, _layout: &Vector) -> Result<()> {
+        self.bulk.keep_account();
+        self.face.keep_account();
+        Ok(())
+    }
+
+    fn energy(&self) -> Option<Energy> {
+        self.face.energy().zip(self.bulk.energy()).map(|(face, body)| Energy::new(face, body))
+    }
+
     fn save(&mut self, u: &Vector, snapshot: &mut Snapshot) -> Result<()> {
         let mut order = self.body.natural_order(u)?;
         order.save("u", u, snapshot)?;
@@ -156,6 +185,7 @@ impl TransientProblem for Monolithic {
     }
 
     fn bulk_fields(&mut self, u: &Vector) -> Result<BulkFields> {
+        self.recoveries += 1;
         let Self { bulk, body, .. } = self;
         let mut effective = Vec::new();
         bulk.effective(u, |y| {
@@ -163,6 +193,16 @@ impl TransientProblem for Monolithic {
             Ok(())
         })?;
         body.fields(u, &effective)
+    }
+
+    fn work(&self) -> Work {
+        Work {
+            memory_fields: self.bulk.memory_vectors(),
+            tangential_laws: self.face.interface().tangential_laws(),
+            recoveries: self.recoveries,
+            factorisations: self.inverse.done[0],
+            solves: self.inverse.done[1],
+        }
     }
 }
 

@@ -43,12 +43,14 @@ pub fn largest(solution: &Solution, field: &[f64], exact: impl Fn(f64) -> f64, (
 }
 
 const EDGE: &str = "one node at each edge";
-const EDGES: &str = "mesh: (k h)^2, next to the edges";
+/// The reason of a tolerance of fields.
+pub const EDGES: &str = "mesh: (k h)^2, next to the edges";
+
 /// A wave on a layer two wavelengths deep; the depth is felt by e^{-2kH} = 1e-11 at most, but by the mean,
 /// whose compliance is the layer's. The pressures are compared at the mean pressure found.
 fn westergaard(n: usize, approach: f64) -> Case {
     let setting = deep(n, 0.3, Indenter::Wave(5e-4), vec![Phase::press(1.0, 2, approach)]);
-    let settings = vec![setting.clone()];
+    let subjects = vec![setting.clone().into()];
     let compare = move |solutions: &[Solution]| {
         let (solution, end) = (&solutions[0], &solutions[0].ends[0]);
         let wave = setting.wave();
@@ -73,7 +75,7 @@ fn westergaard(n: usize, approach: f64) -> Case {
     Case {
         name: format!("Westergaard, approach {approach:e} m, {n} cells"),
         source: "Westergaard 1939; Johnson, Contact Mechanics, 13.2",
-        settings,
+        subjects,
         compare: Box::new(compare),
     }
 }
@@ -94,7 +96,7 @@ pub fn hertz_among_images(setting: &Setting, force: f64) -> Hertz {
 /// A parabola on a deep wide layer, compared at the force found: a half-plane has no approach.
 fn hertz(n: usize) -> Case {
     let setting = deep(n, 0.3, Indenter::Parabola(1.0), vec![Phase::press(1.0, 2, 5e-3)]);
-    let settings = vec![setting.clone()];
+    let subjects = vec![setting.clone().into()];
     let compare = move |solutions: &[Solution]| {
         let (solution, end) = (&solutions[0], &solutions[0].ends[0]);
         let exact = hertz_among_images(&setting, solution.last().normal_force);
@@ -112,7 +114,7 @@ fn hertz(n: usize) -> Case {
     Case {
         name: format!("Hertz, line contact, {n} cells"),
         source: "Hertz; Johnson, Contact Mechanics, 4.2(c)",
-        settings,
+        subjects,
         compare: Box::new(compare),
     }
 }

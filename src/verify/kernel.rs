@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::setting::{Indenter, Phase, Setting, elastic, one_arm};
+use super::setting::{Indenter, Phase, Setting, elastic, one_arm, tanh};
 use super::{Case, Row};
 use crate::oracle::PoissonRule;
 use crate::solution::Solution;
@@ -35,7 +35,8 @@ const SMOOTH: &str = "solver: 1e-10, relative, and round-off";
 /// and likewise for the means with the compliances at k = 0, which bilinear elements represent exactly.
 fn compliance(depth: f64, poisson: f64) -> Case {
     let exact = move |setting: &Setting, k: f64| setting.layer().compliance(k, setting.moduli());
-    let base = Setting { depth, friction: Some([FRICTION, 1e-3]), ..Setting::new(64, elastic(300.0, poisson), vec![]) };
+    let base =
+        Setting { depth, friction: Some(tanh(FRICTION, 1e-3)), ..Setting::new(64, elastic(300.0, poisson), vec![]) };
     let [uniform, wave] = [0.0, TAU].map(|k| exact(&base, k).sliding(FRICTION).norm());
     // Twice what closes the gap in the troughs.
     let approach = 5e-4 * (1.0 + 2.0 * uniform / wave);
@@ -62,7 +63,7 @@ fn compliance(depth: f64, poisson: f64) -> Case {
     Case {
         name: format!("bonded layer, H = {depth} m, nu = {poisson}"),
         source: "plane strain layer on a rigid base, in closed form",
-        settings: vec![fine, coarse],
+        subjects: vec![fine.into(), coarse.into()],
         compare: Box::new(compare),
     }
 }
@@ -98,7 +99,7 @@ fn measured(solution: &Solution) -> Measured {
 fn mirror(n: usize) -> Case {
     let solid = one_arm(0.3, PoissonRule::ConstantRatio);
     let [right, left] = [0.1, -0.1].map(|velocity| Setting {
-        friction: Some([0.2, 1e-3]),
+        friction: Some(tanh(0.2, 1e-3)),
         indenter: Indenter::Wave(5e-4),
         ..Setting::new(n, solid.clone(), vec![Phase::press(10.0, 10, 1e-3), Phase::slide(velocity, 0.3, 20, 1e-3)])
     });
@@ -126,5 +127,10 @@ fn mirror(n: usize) -> Case {
             Row::relative("hysteretic force, likewise, N/m", [r.hysteretic_force, -l.hysteretic_force], 1e-5, SMOOTH),
         ])
     };
-    Case { name: "mirror images".into(), source: "symmetry", settings: vec![right, left], compare: Box::new(compare) }
+    Case {
+        name: "mirror images".into(),
+        source: "symmetry",
+        subjects: vec![right.into(), left.into()],
+        compare: Box::new(compare),
+    }
 }

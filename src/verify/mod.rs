@@ -1,10 +1,11 @@
 //! Fresh solves against known answers: what `mpjr verify` runs.
 //!
-//! A case is a few settings, each made into a scene and solved like any other, and a comparison of what came out with
+//! A case is a few subjects, each a scene that is solved like any other, and a comparison of what came out with
 //! [`crate::oracle`], which shares no code with the finite elements. A tolerance is what the stated reason allows at
 //! that resolution: an error of discretisation that a coarser mesh predicts, the spacing of nodes at a contact's edge,
 //! the memory's error at that step, or the tolerance of the solver. It is not what happened to be found.
 
+mod appendix_a;
 mod half_space;
 mod kernel;
 mod relaxation;
@@ -20,6 +21,7 @@ use mpi::traits::Communicator;
 
 use crate::error::{Error, Result};
 use crate::parallel::agree;
+use crate::scene::Scene;
 use crate::solution::{self, Solution};
 
 pub use setting::Setting;
@@ -31,9 +33,32 @@ pub struct Case {
     /// Where the answer comes from.
     pub source: &'static str,
     /// What is solved.
-    pub settings: Vec<Setting>,
-    /// Compares the solutions, in the order of the settings, with the answer.
+    pub subjects: Vec<Subject>,
+    /// Compares the solutions, in the order of the subjects, with the answer.
     pub compare: Compare,
+}
+
+/// Something to be solved.
+pub enum Subject {
+    /// A layer by its numbers.
+    Layer(Setting),
+    /// A scene and the .msh file that it names.
+    Scene(Box<Scene>, &'static [u8]),
+}
+
+impl From<Setting> for Subject {
+    fn from(setting: Setting) -> Self {
+        Self::Layer(setting)
+    }
+}
+
+impl Subject {
+    fn solve(&self, comm: &SimpleCommunicator) -> Result<Solution> {
+        match self {
+            Self::Layer(setting) => solution::solve(comm, &setting.scene()?),
+            Self::Scene(scene, mesh) => solution::solve_on_mesh(comm, scene, mesh),
+        }
+    }
 }
 
 /// See [`Case::compare`].
@@ -143,7 +168,10 @@ impl fmt::Display for Tally {
 pub fn cases(quick: bool) -> Result<Vec<Case>> {
     let mut list = kernel::cases(quick);
     list.extend(half_space::cases(quick));
-    list.extend(tangential::cases());
+    list.extend(tangential::cases(quick));
+    if !quick {
+        list.extend(appendix_a::cases()?);
+    }
     list.extend(relaxation::cases(quick));
     list.extend(steady::cases(quick));
     list.extend(sliding::cases(quick));
@@ -153,8 +181,7 @@ pub fn cases(quick: bool) -> Result<Vec<Case>> {
 /// Solves a case on all ranks and compares; all ranks get the same rows. A scene that does not converge is a row that
 /// fails.
 pub fn solve(comm: &SimpleCommunicator, case: &Case) -> Result<Vec<Row>> {
-    let solve = |setting: &Setting| solution::solve(comm, &setting.scene()?);
-    let rows = match case.settings.iter().map(solve).collect::<Result<Vec<_>>>() {
+    let rows = match case.subjects.iter().map(|subject| subject.solve(comm)).collect::<Result<Vec<_>>>() {
         Ok(solutions) if comm.rank() == 0 => (case.compare)(&solutions),
         Ok(_) => Ok(Vec::new()),
         Err(error) => Err(error),

@@ -69,7 +69,7 @@ fn compression(rule: PoissonRule) -> Case {
     Case {
         name: format!("Prony relaxation, three arms, {rule}"),
         source: "ramp and hold in uniaxial strain, in closed form",
-        settings: vec![setting],
+        subjects: vec![setting.into()],
         compare: Box::new(compare),
     }
 }
@@ -79,7 +79,7 @@ fn compression(rule: PoissonRule) -> Case {
 fn compression_backward_euler() -> Case {
     let with =
         |steps| Setting { update: Update::BackwardEuler, ..pressed(three_arms(PoissonRule::ConstantRatio), steps) };
-    let settings = vec![with([200, 60]), with([400, 120])];
+    let settings = [with([200, 60]), with([400, 120])];
     let solid = settings[0].solid.clone();
     let compare = move |solutions: &[Solution]| {
         let [coarse, fine] = [0, 1].map(|i| solutions[i].end_of(0).normal_force);
@@ -99,7 +99,7 @@ fn compression_backward_euler() -> Case {
     Case {
         name: "Prony relaxation, backward Euler".into(),
         source: "ramp in uniaxial strain, in closed form",
-        settings,
+        subjects: settings.map(Into::into).into(),
         compare: Box::new(compare),
     }
 }
@@ -111,7 +111,7 @@ fn elastic_limits(n: usize) -> Case {
         let solid = one_arm(0.3, PoissonRule::ConstantRatio);
         Setting::new(n, solid, vec![Phase::press(duration, 4, 1e-3)])
     };
-    let settings = vec![with(1e-6), with(1e6)];
+    let settings = [with(1e-6), with(1e6)];
     let fast = settings[0].clone();
     let compare = move |solutions: &[Solution]| {
         let mut glassy = fast.steady(0.0);
@@ -131,7 +131,7 @@ fn elastic_limits(n: usize) -> Case {
     Case {
         name: "elastic limits of one arm".into(),
         source: "complementarity in Fourier space, 512 nodes",
-        settings,
+        subjects: settings.map(Into::into).into(),
         compare: Box::new(compare),
     }
 }

@@ -3,10 +3,10 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::oracle::transient::{self, Update};
 use crate::oracle::{Harmonic, Layer, Moduli, PoissonRule, Solid, steady};
-use crate::scene::{self, Scene, Source};
+use crate::scene::{self, Friction, Scene, Source};
 
 /// A periodic layer, an indenter and its motion. Lengths in m, stresses in Pa.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,8 +27,12 @@ pub struct Setting {
     pub indenter: Indenter,
     /// Pa/m
     pub penalty: f64,
-    /// Coefficient and regularisation (m/s); none = frictionless.
-    pub friction: Option<[f64; 2]>,
+    /// The penalty that the augmented Lagrangian begins with, Pa/m; none = no multipliers.
+    pub augmented_from: Option<f64>,
+    /// None = frictionless.
+    pub friction: Option<Friction>,
+    /// Whether the elements are those for Poisson ratios near 1/2.
+    pub mean_dilatation: bool,
     /// The phases, in order.
     pub phases: Vec<Phase>,
 }
@@ -77,6 +81,11 @@ pub fn one_arm(poisson: f64, rule: PoissonRule) -> Solid {
     Solid { shear: 568.498, poisson, rule, arms: vec![(0.579, 0.817)] }
 }
 
+/// Friction regularised by the slip rate, m/s.
+pub fn tanh(coefficient: f64, regularisation: f64) -> Friction {
+    Friction::CoulombTanh { coefficient, regularisation }
+}
+
 impl Setting {
     /// The paper's layer and wave (1 m, 1 m, 5e-4 m) on n x n cells; rigid but for a penalty of 1e8 Pa/m, frictionless.
     pub fn new(n: usize, solid: Solid, phases: Vec<Phase>) -> Self {
@@ -89,7 +98,9 @@ impl Setting {
             update: Update::Exponential,
             indenter: Indenter::Wave(5e-4),
             penalty: 1e8,
+            augmented_from: None,
             friction: None,
+            mean_dilatation: false,
             phases,
         }
     }
@@ -131,22 +142,31 @@ impl Setting {
                 format!("profile = \"parabola\"\nradius = {radius:?}\ncentre = {:?}", 0.5 * self.width)
             }
         };
+        let element = if self.mean_dilatation { "q4_bbar" } else { "q4" };
+        let method = if self.augmented_from.is_some() { "\nmethod = \"augmented\"" } else { "" };
         let mut text = format!(
             "[layer]\nwidth = {:?}\ndepth = {:?}\ncells = [{nx}, {nz}]\ngrading = {:?}\nsides = \"periodic\"\n\
-             [material]\nshear_modulus = {:?}\npoisson_ratio = {:?}\narms = [{}]\npoisson_rule = \"{rule}\"\n\
-             memory = \"{memory}\"\n[indenter]\n{indenter}\n[contact]\npenalty = {:?}\n[solver]\ntolerance = 1e-10\n",
+             element = \"{element}\"\n[material]\nshear_modulus = {:?}\npoisson_ratio = {:?}\narms = [{}]\npoisson_rule = \"{rule}\"\n\
+             memory = \"{memory}\"\n[indenter]\n{indenter}\n[contact]\npenalty = {:?}{method}\n[solver]\ntolerance = 1e-10\n",
             self.width,
             self.depth,
             self.grading,
             solid.shear,
             solid.poisson,
             arms.join(", "),
-            self.penalty
+            self.augmented_from.unwrap_or(self.penalty)
         );
         // Writing to a string cannot fail.
-        if let Some([coefficient, regularisation]) = self.friction {
-            let _ = writeln!(text, "[friction]\nlaw = \"coulomb_tanh\"\ncoefficient = {coefficient:?}");
-            let _ = writeln!(text, "regularisation = {regularisation:?}");
+        match self.friction {
+            Some(Friction::CoulombTanh { coefficient, regularisation }) => {
+                let _ = writeln!(text, "[friction]\nlaw = \"coulomb_tanh\"\ncoefficient = {coefficient:?}");
+                let _ = writeln!(text, "regularisation = {regularisation:?}");
+            }
+            Some(Friction::CoulombElasticSlip { coefficient, elastic_slip }) => {
+                let _ = writeln!(text, "[friction]\nlaw = \"coulomb_elastic_slip\"\ncoefficient = {coefficient:?}");
+                let _ = writeln!(text, "elastic_slip = {elastic_slip:?}");
+            }
+            None => {}
         }
         for Phase { duration, steps, approach, velocity } in &self.phases {
             let _ = writeln!(text, "[[phase]]\nduration = {duration:?}\nsteps = {steps}\napproach = {approach:?}");
@@ -178,14 +198,20 @@ impl Setting {
             solid: self.solid.clone(),
             width: self.width,
             velocity,
-            friction: self.friction.map_or(0.0, |[coefficient, _]| coefficient),
+            friction: self.friction.as_ref().map_or(0.0, Friction::coefficient),
             softness: 1.0 / self.penalty,
         }
     }
 
     /// The oracle's forces at the end of each phase, by the same steps on `nodes` nodes; for waves at constant velocity.
     pub fn transient(&self, nodes: usize) -> Result<Vec<Vec<transient::Forces>>> {
-        let [friction, regularisation] = self.friction.unwrap_or([0.0, 1.0]);
+        let (friction, regularisation) = match self.friction {
+            Some(Friction::CoulombTanh { coefficient, regularisation }) => (coefficient, regularisation),
+            Some(Friction::CoulombElasticSlip { .. }) => {
+                return Err(Error::Internal("the oracle's friction has no elastic slip".into()));
+            }
+            None => (0.0, 1.0),
+        };
         let setup = transient::Setup {
             layer: self.layer(),
             solid: self.solid.clone(),
@@ -225,7 +251,7 @@ mod tests {
     fn the_scene_is_the_setting() {
         let solid = Solid { shear: 568.498, ..one_arm(1.0 / 3.0, PoissonRule::ConstantBulkModulus) };
         let phases = vec![Phase::press(0.1, 3, 1e-3 / 7.0), Phase::slide(-0.3, 1.0, 5, 2e-3)];
-        let setting = Setting { friction: Some([0.2, 1e-7]), ..Setting::new(8, solid, phases) };
+        let setting = Setting { friction: Some(tanh(0.2, 1e-7)), ..Setting::new(8, solid, phases) };
         let scene = setting.scene().unwrap();
         let material = &scene.materials[0];
         assert_eq!((material.poisson_ratio, material.shear_modulus), (1.0 / 3.0, 568.498));

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::setting::{Phase, Setting, one_arm};
+use super::setting::{Phase, Setting, one_arm, tanh};
 use super::{Case, Row, resolution};
 use crate::oracle::PoissonRule;
 use crate::oracle::steady::Load;
@@ -36,14 +36,14 @@ fn slid(n: usize, velocity: f64, rule: PoissonRule, approach: f64) -> Setting {
     let steps = (distance * n as f64).ceil();
     let slide = Phase::slide(velocity, steps / n as f64, steps as usize, approach);
     let phases = vec![Phase::press(10.0, 20, approach), slide];
-    Setting { friction: Some([0.2, 0.01 * velocity]), ..Setting::new(n, one_arm(0.3, rule), phases) }
+    Setting { friction: Some(tanh(0.2, 0.01 * velocity)), ..Setting::new(n, one_arm(0.3, rule), phases) }
 }
 
 /// Full contact is exact: |integral of p h'| = (1/2) wavelength k g0^2 |Im 1/(C_zz - i f C_xz)|, C at G*(k v). Mesh and
 /// steps are halved together, and both errors are of second order.
 fn full_contact(n: usize, rule: PoissonRule) -> Case {
     let (velocity, approach) = (0.1, 8e-3);
-    let settings = vec![slid(n, velocity, rule, approach), slid(n / 2, velocity, rule, approach)];
+    let settings = [slid(n, velocity, rule, approach), slid(n / 2, velocity, rule, approach)];
     let setting = settings[0].clone();
     let compare = move |solutions: &[Solution]| {
         let exact = setting.steady(velocity).full_contact(setting.wave(), Load::Approach(approach))?;
@@ -60,7 +60,7 @@ fn full_contact(n: usize, rule: PoissonRule) -> Case {
     Case {
         name: format!("hysteresis in full contact, v = {velocity} m/s, {}", said(rule)),
         source: "full contact of a wave, in closed form",
-        settings,
+        subjects: settings.map(Into::into).into(),
         compare: Box::new(compare),
     }
 }
@@ -68,7 +68,7 @@ fn full_contact(n: usize, rule: PoissonRule) -> Case {
 /// Partial contact against the complementarity problem in Fourier space on 512 nodes.
 fn partial_contact(n: usize, velocity: f64, rule: PoissonRule) -> Case {
     let setting = slid(n, velocity, rule, APPROACH);
-    let settings = vec![setting.clone()];
+    let subjects = vec![setting.clone().into()];
     let compare = move |solutions: &[Solution]| {
         let wave = setting.wave();
         let exact = setting.steady(velocity).solve(512, |x| wave.at(x), Load::Approach(APPROACH))?;
@@ -94,7 +94,7 @@ fn partial_contact(n: usize, velocity: f64, rule: PoissonRule) -> Case {
     Case {
         name: format!("steady sliding, v = {velocity} m/s, {}, {n} x {n}", said(rule)),
         source: "complementarity in Fourier space, 512 nodes",
-        settings,
+        subjects,
         compare: Box::new(compare),
     }
 }

@@ -201,7 +201,8 @@ pub fn numbers(path: &Path) -> Vec<(String, Vec<f64>)> {
     }
     if results.has("history/energy/stored") {
         for column in file.group("history/energy").unwrap().member_names().unwrap() {
-            all.push((column.clone(), results.history(&format!("energy/{column}")).unwrap()));
+            let column = format!("energy/{column}");
+            all.push((column.clone(), results.history(&column).unwrap()));
         }
     }
     for group in ["interface", "bulk"] {
@@ -217,17 +218,27 @@ pub fn numbers(path: &Path) -> Vec<(String, Vec<f64>)> {
 pub fn assert_same(one: &Path, other: &Path, within: f64) {
     let (one, other) = (numbers(one), numbers(other));
     assert_eq!(one.len(), other.len());
+    let work = one.iter().find(|(name, _)| name == "energy/external_work").map_or(0.0, |(_, work)| largest(work));
     for ((name, one), (_, other)) in one.iter().zip(&other) {
         assert_eq!(one.len(), other.len(), "{name}");
         if within == 0.0 {
             let differing = one.iter().zip(other).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
             assert_eq!(differing, 0, "{name}: numbers that differ");
         } else if name != "newton_iterations" {
-            // The oscillation of the tractions is already relative to them.
-            let floor = if name == "traction_oscillation" { 1.0 } else { 0.0 };
-            let largest = one.iter().fold(floor, |largest: f64, value| largest.max(value.abs()));
+            let floor = match name.as_str() {
+                // Already relative to the tractions.
+                "traction_oscillation" => 1.0,
+                // Differences of what is as large as the work.
+                name if name.starts_with("energy/") => work,
+                _ => 0.0,
+            };
+            let largest = largest(one).max(floor);
             let difference = one.iter().zip(other).fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs()));
             assert!(difference <= within * largest, "{name}: {difference:e} of {largest:e}");
         }
     }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest, value| largest.max(value.abs()))
 }

@@ -2,7 +2,8 @@
 
 use std::time::SystemTime;
 
-use mpjr::output::{BulkPlan, Energy, HistoryRow, InterfaceFrame, Metadata, Plan};
+use mpjr::energy::Energy;
+use mpjr::output::{BulkPlan, HistoryRow, InterfaceFrame, Metadata, Plan};
 
 /// Nodes of the contact face.
 pub const FACE: usize = 5;
@@ -59,6 +60,7 @@ pub fn row(i: usize) -> HistoryRow {
         contact_fraction: 7.0 * v,
         stick_fraction: 8.0 * v,
         max_penetration: 9.0 * v,
+        stuck_slip: 18.0 * v,
         newton_iterations: 10 * i,
         traction_oscillation: 17.0 * v,
         energy: Energy {
@@ -73,7 +75,7 @@ pub fn row(i: usize) -> HistoryRow {
 }
 
 /// The real columns of [`row`] other than time, with their factors.
-pub const COLUMNS: [(&str, f64); 16] = [
+pub const COLUMNS: [(&str, f64); 17] = [
     ("approach", 2.0),
     ("sliding", 3.0),
     ("normal_force", 4.0),
@@ -84,6 +86,7 @@ pub const COLUMNS: [(&str, f64); 16] = [
     ("max_penetration", 9.0),
     ("newton_iterations", 10.0),
     ("traction_oscillation", 17.0),
+    ("stuck_slip", 18.0),
     ("energy/external_work", 11.0),
     ("energy/stored", 12.0),
     ("energy/viscoelastic_dissipation", 13.0),

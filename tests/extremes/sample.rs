@@ -54,15 +54,26 @@ pub struct Sample {
     pub arms: usize,
     pub rule: &'static str,
     pub memory: &'static str,
-    pub quadrature: &'static str,
     pub sides: &'static str,
     pub profile: &'static str,
-    pub strategy: &'static str,
     /// What follows the approach: to slide, to slide and turn round, to slide and lift off.
     pub motion: &'static str,
 }
 
 impl Sample {
+    /// The head of a table of samples and whether they converged.
+    pub const COLUMNS: &str = "velocity,step,penalty,regularisation,poisson,friction,depth,amplitude,approach,sides,profile,motion,converged\n";
+
+    /// The row of such a table, but for the last column.
+    pub fn row(&self) -> String {
+        let Self { velocity, step, penalty, regularisation, poisson, friction, .. } = self;
+        let Self { depth, amplitude, approach, sides, profile, motion, .. } = self;
+        format!(
+            "{velocity:e},{step:e},{penalty:e},{regularisation:e},{poisson},{friction:e},{depth:e},{amplitude:e},\
+             {approach},{sides},{profile},{motion}"
+        )
+    }
+
     /// A draw over all ranges.
     pub fn random(draw: &mut Draw) -> Self {
         let poisson = match draw.unit() {
@@ -89,17 +100,15 @@ impl Sample {
             arms: draw.one_of(&[0, 1, 2, 5]),
             rule: draw.one_of(&["constant_ratio", "constant_bulk_modulus"]),
             memory: draw.one_of(&["exponential", "backward_euler"]),
-            quadrature: draw.one_of(&["nodal", "gauss"]),
             sides: draw.one_of(&["periodic", "free", "roller", "fixed"]),
             profile: draw.one_of(&["harmonic", "parabola", "circle", "wedge"]),
-            strategy: draw.one_of(&["auto", "auto", "monolithic"]),
             motion: draw.one_of(&["slide", "turn", "lift"]),
         }
     }
 
     /// The scene, in units where the wavelength is `length` m, E is `modulus` Pa and relaxation times are of `time` s.
     pub fn scene(&self, length: f64, modulus: f64, time: f64) -> String {
-        let Sample { poisson, depth, cells, rule, memory, quadrature, sides, strategy, .. } = self;
+        let Sample { poisson, depth, cells, rule, memory, sides, .. } = self;
         let height = self.depth / cells[1] as f64;
         let (amplitude, speed) = (self.amplitude * length, self.velocity * length / time);
         let profile = match self.profile {
@@ -130,12 +139,8 @@ impl Sample {
         if self.arms > 0 {
             let _ = write!(text, "poisson_rule = \"{rule}\"\nmemory = \"{memory}\"\n");
         }
-        let _ = write!(
-            text,
-            "[indenter]\n{profile}\n[contact]\npenalty = {:e}\nquadrature = \"{quadrature}\"\n\
-             [solver]\nstrategy = \"{strategy}\"\n",
-            self.penalty * modulus / (height * length)
-        );
+        let penalty = self.penalty * modulus / (height * length);
+        let _ = write!(text, "[indenter]\n{profile}\n[contact]\npenalty = {penalty:e}\n");
         if self.friction > 0.0 {
             let _ = write!(
                 text,

@@ -14,6 +14,7 @@ use super::super::progress::Progress;
 use super::claim::Claim;
 use super::folder::Record;
 use super::tasks::{Next, Tasks};
+use crate::composition::Compliances;
 use crate::error::{Error, Result};
 use crate::parallel::{agree, any, broadcast};
 use crate::petsc::Session;
@@ -24,6 +25,8 @@ const LOOK_EVERY: Duration = Duration::from_millis(20);
 /// Some of the ranks.
 pub struct Group {
     comm: SimpleCommunicator,
+    /// What cases have in common.
+    compliances: Compliances,
 }
 
 /// What all ranks of a group do next: the decision of its rank 0.
@@ -41,7 +44,7 @@ impl Group {
         let groups = (world.size() as usize / ranks).max(1);
         let color = Color::with_value((world.rank() as usize / ranks).min(groups - 1) as i32);
         let comm = world.split_by_color(color).unwrap_or_else(|| world.duplicate());
-        Self { comm }
+        Self { comm, compliances: Compliances::default() }
     }
 
     /// Solves whatever is to be done, until nothing is left or a signal comes.
@@ -116,6 +119,7 @@ impl Group {
             file: &tasks.sweep.file,
             out: &shared.results,
             origin: Origin::Rest,
+            compliances: &self.compliances,
             keep_state: true,
         };
         let outcome = case::solve(&job, |total| Progress::claim(claim.cloned(), total)).and_then(|done| done.result);
@@ -147,7 +151,17 @@ impl Group {
             None => Origin::Rest,
         };
         let file = &tasks.sweep.file;
-        let job = Job { session, comm: &self.comm, interrupt, scene, file, out: &out, origin, keep_state: false };
+        let job = Job {
+            session,
+            comm: &self.comm,
+            interrupt,
+            scene,
+            file,
+            out: &out,
+            origin,
+            compliances: &self.compliances,
+            keep_state: false,
+        };
         let outcome = case::solve(&job, |total| Progress::claim(claim.cloned(), total)).and_then(|done| done.result);
         let record = Record {
             run: tasks.run.clone(),

@@ -6,7 +6,7 @@ use crate::output::reader::Results;
 use crate::scene::sweep::Sweep;
 
 /// The columns of the history of which the last value is given, with `energy/` ones where a run has them.
-const FIGURES: [&str; 16] = [
+const FIGURES: [&str; 17] = [
     "time",
     "approach",
     "sliding",
@@ -16,6 +16,7 @@ const FIGURES: [&str; 16] = [
     "contact_fraction",
     "stick_fraction",
     "max_penetration",
+    "stuck_slip",
     "newton_iterations",
     "energy/external_work",
     "energy/stored",

@@ -47,7 +47,7 @@ fn force(run: &Run, label: &str, values: &[f64], colour: usize) -> Curve {
 }
 
 /// Dotted lines over the whole height where a phase ends, but for the last.
-fn phase_ends(run: &Run, figure: &mut Figure) {
+pub(super) fn phase_ends(run: &Run, figure: &mut Figure) {
     let values = || figure.curves.iter().flat_map(|curve| &curve.points).map(|p| p.1).filter(|v| v.is_finite());
     let (low, high) = values().fold((0.0f64, 0.0f64), |(low, high), v| (low.min(v), high.max(v)));
     let air = 0.06 * (high - low);

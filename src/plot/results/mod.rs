@@ -1,8 +1,10 @@
 //! Figures of one run, from its result file; one module each.
 
+mod energy;
 mod history;
 mod material;
 mod profile;
+mod reactions;
 mod stick_slip;
 mod stress;
 mod tractions;
@@ -24,6 +26,8 @@ pub struct Run {
     pub scene: Scene,
     /// The history of forces.
     pub history: History,
+    /// Radius of the half disk whose closed forms are drawn beside the reactions, m.
+    pub half_disk: Option<f64>,
     results: Results,
 }
 
@@ -34,6 +38,8 @@ pub struct History {
     pub time: Vec<f64>,
     /// Index of the phase.
     pub phase: Vec<usize>,
+    /// Normal approach of the indenter, m.
+    pub approach: Vec<f64>,
     /// Tangential displacement of the indenter, m.
     pub sliding: Vec<f64>,
     /// N/m
@@ -73,8 +79,23 @@ pub struct Kind {
 }
 
 /// All figures of a result file.
-pub const FIGURES: [Kind; 6] = [
+pub const FIGURES: [Kind; 8] = [
     Kind { name: "history", shows: "forces against time", lacks: |_| None, sheet: history::sheet },
+    Kind {
+        name: "reactions",
+        shows: "forces against the imposed displacements (Figures A1 to A3)",
+        lacks: |_| None,
+        sheet: reactions::sheet,
+    },
+    Kind {
+        name: "energy",
+        shows: "where the work of the indenter goes, against time",
+        lacks: |run| {
+            let kept = run.results.has("history/energy/stored");
+            (!kept).then_some("no energies (the scene's output.energy switches them off)")
+        },
+        sheet: energy::sheet,
+    },
     Kind {
         name: "tractions",
         shows: "tractions along the face (Figure 6)",
@@ -134,6 +155,7 @@ impl Run {
         let history = History {
             time: column("time")?,
             phase: column("phase")?.into_iter().map(|phase| phase as usize).collect(),
+            approach: column("approach")?,
             sliding: column("sliding")?,
             normal: column("normal_force")?,
             tangential: column("tangential_force")?,
@@ -141,7 +163,7 @@ impl Run {
             contact: column("contact_fraction")?,
             stick: column("stick_fraction")?,
         };
-        Ok(Self { path: path.to_owned(), scene, history, results })
+        Ok(Self { path: path.to_owned(), scene, history, half_disk: None, results })
     }
 
     /// Whether all phases were solved.

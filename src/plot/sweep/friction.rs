@@ -30,18 +30,18 @@ pub fn sheet(sweep: &Sweep) -> Sheet {
             against_velocity(sweep, |case| Some((tangential(case) + hysteretic(case)) / normal(case))),
         ),
     ];
+    let peak = |case: &Case| case.history.tangential.iter().fold(0.0f64, |high, q| high.max(*q)) / tangential(case);
+    figures.push(figure(
+        "(d) peak while sliding starts",
+        "largest Q / steady Q",
+        against_velocity(sweep, |case| Some(peak(case))),
+    ));
     let shares = against_velocity(sweep, viscoelastic_share);
-    figures.push(if shares.is_empty() {
-        figure(
-            "(d) peak while sliding starts",
-            "largest Q / steady Q",
-            against_velocity(sweep, |case| {
-                Some(case.history.tangential.iter().fold(0.0f64, |high, q| high.max(*q)) / tangential(case))
-            }),
-        )
-    } else {
-        figure("(d) energy: the rest goes into friction", "share of the arms in the work, %", shares)
-    });
+    if !shares.is_empty() {
+        let stored = against_velocity(sweep, |case| case.energy.as_ref()?.stored.last().copied());
+        figures.push(figure("(e) energy: the rest goes into friction", "share of the arms in the work, %", shares));
+        figures.push(figure("(f) energy in the layer", "steady stored energy, J/m", stored));
+    }
     Sheet::of_curves(figures, 2, (760, 520))
 }
 

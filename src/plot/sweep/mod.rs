@@ -33,6 +33,7 @@ struct Case {
 struct Energy {
     external: Vec<f64>,
     viscoelastic: Vec<f64>,
+    stored: Vec<f64>,
 }
 
 /// The cases with one material, by velocity, and what bounds them.
@@ -119,6 +120,16 @@ fn files(directory: &Path) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
+impl Energy {
+    fn of(run: &Run) -> Option<Self> {
+        Some(Self {
+            external: run.energy("external_work")?,
+            viscoelastic: run.energy("viscoelastic_dissipation")?,
+            stored: run.energy("stored")?,
+        })
+    }
+}
+
 impl Case {
     /// None where the indenter does not end at a velocity.
     fn of(run: Run) -> Option<Self> {
@@ -126,10 +137,7 @@ impl Case {
             Motion::Velocity(velocity) if velocity != 0.0 => velocity.abs(),
             _ => return None,
         };
-        let energy = run
-            .energy("external_work")
-            .zip(run.energy("viscoelastic_dissipation"))
-            .map(|(external, viscoelastic)| Energy { external, viscoelastic });
+        let energy = Energy::of(&run);
         let t0 = run.approach_time();
         Some(Self { materials: run.scene.materials, velocity, t0, history: run.history, energy })
     }

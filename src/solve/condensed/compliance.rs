@@ -1,22 +1,31 @@
-//! The elastic compliance of the contact face: what the condensed strategy needs of the body.
+//! The compliance of the contact face: what the condensed strategy needs of the body.
 //!
-//! u = C f for forces f on the face alone, at the instantaneous moduli: C is the inverse of the Schur complement of
-//! the stiffness onto the face.
+//! u = C f for forces f on the face alone: C is the inverse of the Schur complement of the stiffness onto the face.
 
-use std::f64::consts::PI;
-
-use nalgebra::{Complex, Matrix2};
+use nalgebra::Matrix2;
 
 use super::super::body::Body;
-use crate::element::quad4;
+use super::waves::{Elimination, Transform, Wave};
 use crate::error::Result;
 use crate::petsc::Cholesky;
 
-/// C, dense: (x, z of each face node)^2, m per N/m, column-major; zero rows and columns where a component is held.
-#[derive(Debug, Clone, PartialEq)]
+/// C over (x, z of each face node), m per N/m; zero rows and columns where a component is held.
 pub struct Compliance {
     order: usize,
-    values: Vec<f64>,
+    form: Form,
+}
+
+enum Form {
+    /// Column-major.
+    Dense(Vec<f64>),
+    /// Block-circulant: one product is a Fourier transform there and back, and memory is that of two columns.
+    Periodic {
+        transform: Transform,
+        /// C of each wavenumber.
+        waves: Vec<Matrix2<f64>>,
+        /// The columns of the first node's x and z.
+        first: [Vec<f64>; 2],
+    },
 }
 
 impl Compliance {
@@ -52,29 +61,40 @@ impl Compliance {
                 values[column * order + row] = *value;
             }
         }
-        Self { order, values }
+        Self { order, form: Form::Dense(values) }
     }
 
-    /// For a periodic layer, whose stiffness is block-circulant along x: one block-tridiagonal elimination through
-    /// the depth per wavenumber, and no sparse factor at all. `cells` are those of one column, from the top down.
-    ///
-    /// At wavenumber k the layer is a column of node rows coupled by Hermitian 2 x 2 blocks; elimination from the
-    /// clamped row upward leaves S(k) at the face, and C(x) is the inverse transform of S(k)^-1.
-    pub fn of_periodic_columns(cells: &[quad4::Stiffness], columns: usize) -> Self {
-        // C(-k) is the conjugate of C(k): half of the wavenumbers suffice.
-        let spectrum: Vec<Matrix2<Complex<f64>>> =
-            (0..=columns / 2).map(|k| face_compliance(cells, 2.0 * PI * k as f64 / columns as f64)).collect();
-        let mut values = vec![0.0; 4 * columns * columns];
-        for offset in 0..columns {
-            let block = at_offset(&spectrum, offset, columns);
-            for source in 0..columns {
-                let node = (source + offset) % columns;
-                for (row, column) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                    values[(2 * source + column) * 2 * columns + 2 * node + row] = block[(row, column)];
-                }
-            }
+    /// Of so many components, for [`Self::set_column`] to fill.
+    pub fn unknown(order: usize) -> Self {
+        Self { order, form: Form::Dense(vec![0.0; order * order]) }
+    }
+
+    /// Makes a column known: the displacements of the face under a unit force.
+    pub fn set_column(&mut self, column: usize, values: &[f64]) {
+        if let Form::Dense(all) = &mut self.form {
+            all[column * self.order..][..self.order].copy_from_slice(values);
         }
-        Self { order: 2 * columns, values }
+    }
+
+    /// Of a periodic layer of so many columns.
+    pub fn of_periodic_layer(elimination: &Elimination, columns: usize) -> Result<Self> {
+        let transform = Transform::new(columns);
+        let waves: Vec<Matrix2<f64>> = elimination.face().collect();
+        let column = |component: usize| {
+            let mut force = vec![0.0; 2 * columns];
+            force[component] = 1.0;
+            response(&transform, &waves, &force)
+        };
+        let first = [column(0)?, column(1)?];
+        Ok(Self { order: 2 * columns, form: Form::Periodic { transform, waves, first } })
+    }
+
+    /// C of each wavenumber, and the transform; none where the face is not that of a periodic layer.
+    pub fn waves(&self) -> Option<(&Transform, &[Matrix2<f64>])> {
+        match &self.form {
+            Form::Periodic { transform, waves, .. } => Some((transform, waves)),
+            Form::Dense(_) => None,
+        }
     }
 
     /// Rows, and columns.
@@ -82,71 +102,58 @@ impl Compliance {
         self.order
     }
 
-    /// A column: the displacements of the face under a unit force.
-    pub fn column(&self, column: usize) -> &[f64] {
-        &self.values[column * self.order..][..self.order]
-    }
-
-    /// u += C f, for forces given as (place, force).
-    pub fn add_displacements(&self, forces: impl Iterator<Item = (usize, f64)>, u: &mut [f64]) {
-        for (place, force) in forces.filter(|(_, force)| *force != 0.0) {
-            for (u, c) in u.iter_mut().zip(self.column(place)) {
-                *u += c * force;
+    /// target += factor times the rows `places` of a column.
+    pub fn add_column(&self, column: usize, factor: f64, places: &[usize], target: &mut [f64]) {
+        match &self.form {
+            Form::Dense(values) => {
+                let source = &values[column * self.order..][..self.order];
+                for (value, &place) in target.iter_mut().zip(places) {
+                    *value += factor * source[place];
+                }
+            }
+            Form::Periodic { first, .. } => {
+                let (source, shift) = (&first[column % 2], column - column % 2);
+                for (value, &place) in target.iter_mut().zip(places) {
+                    let row = if place >= shift { place - shift } else { place + self.order - shift };
+                    *value += factor * source[row];
+                }
             }
         }
+    }
+
+    /// u += C f, for forces given as (place, force); a place may come more than once.
+    pub fn add_displacements(&self, forces: impl Iterator<Item = (usize, f64)>, u: &mut [f64]) -> Result<()> {
+        match &self.form {
+            Form::Dense(values) => {
+                for (place, force) in forces.filter(|(_, force)| *force != 0.0) {
+                    for (u, c) in u.iter_mut().zip(&values[place * self.order..][..self.order]) {
+                        *u += c * force;
+                    }
+                }
+            }
+            Form::Periodic { transform, waves, .. } => {
+                let mut all = vec![0.0; self.order];
+                forces.for_each(|(place, force)| all[place] += force);
+                if all.iter().any(|force| *force != 0.0) {
+                    u.iter_mut().zip(response(transform, waves, &all)?).for_each(|(u, more)| *u += more);
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The largest diagonal entry, m per N/m.
     pub fn largest(&self) -> f64 {
-        (0..self.order).map(|i| self.column(i)[i]).fold(0.0, f64::max)
-    }
-}
-
-/// S(k)^-1 at the phase `angle` = k dx of one column of cells (from the top down).
-fn face_compliance(cells: &[quad4::Stiffness], angle: f64) -> Matrix2<Complex<f64>> {
-    let mut schur: Option<Matrix2<Complex<f64>>> = None;
-    for cell in cells.iter().rev() {
-        let [upper, coupling, lower] = column_blocks(cell, angle);
-        schur = Some(match schur {
-            // The lower row of the lowest cell is clamped.
-            None => upper,
-            Some(below) => {
-                // K_u - K_ul (S_below + K_l)^-1 K_lu
-                let pivot = (below + lower).try_inverse().unwrap_or_else(Matrix2::zeros);
-                upper - coupling * pivot * coupling.adjoint()
-            }
-        });
-    }
-    schur.and_then(Matrix2::try_inverse).unwrap_or_else(Matrix2::zeros)
-}
-
-/// A cell's stiffness between waves of the node rows above and below it: (upper, upper), (upper, lower),
-/// (lower, lower). Corners: lower left, lower right, upper right, upper left; the right ones lead by `angle`.
-fn column_blocks(cell: &quad4::Stiffness, angle: f64) -> [Matrix2<Complex<f64>>; 3] {
-    let lead = Complex::from_polar(1.0, angle);
-    let phase = [Complex::from(1.0), lead, lead, Complex::from(1.0)];
-    let (upper, lower) = ([2, 3], [0, 1]);
-    let between = |rows: [usize; 2], columns: [usize; 2]| {
-        let mut block = Matrix2::zeros();
-        for row in rows {
-            for column in columns {
-                let real = cell.fixed_view::<2, 2>(2 * row, 2 * column).map(Complex::from);
-                block += real * (phase[row].conj() * phase[column]);
-            }
+        match &self.form {
+            Form::Dense(values) => values.iter().step_by(self.order + 1).fold(0.0, |most, c| c.max(most)),
+            Form::Periodic { first, .. } => first[0][0].max(first[1][1]),
         }
-        block
-    };
-    [between(upper, upper), between(upper, lower), between(lower, lower)]
+    }
 }
 
-/// The real block C(x = offset) from the half spectrum of a sequence of `length`.
-fn at_offset(spectrum: &[Matrix2<Complex<f64>>], offset: usize, length: usize) -> Matrix2<f64> {
-    let mut sum = Matrix2::zeros();
-    for (k, block) in spectrum.iter().enumerate() {
-        let twice = if k == 0 || 2 * k == length { 1.0 } else { 2.0 };
-        // Reduced first: the angle keeps its digits for long faces.
-        let angle = 2.0 * PI * ((k * offset) % length) as f64 / length as f64;
-        sum += block.map(|value| (value * Complex::from_polar(1.0, angle)).re) * twice;
-    }
-    sum / length as f64
+/// The displacements of a periodic face under forces on it.
+fn response(transform: &Transform, waves: &[Matrix2<f64>], forces: &[f64]) -> Result<Vec<f64>> {
+    let mut w = transform.forward(forces)?;
+    w.iter_mut().zip(waves).for_each(|(w, c): (&mut Wave, _)| *w = c * *w);
+    transform.inverse(w.iter())
 }

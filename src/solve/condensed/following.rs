@@ -5,13 +5,23 @@
 //! ```text
 //! y = mu_0 u + sum_i mu_i z_i+,     c = mu_0 + sum_i mu_i gain_i,     C elastic, instantaneous     (y = u, c = 1 without memory)
 //! ```
+//!
+//! The energy needs S = C^-1 on these displacements: the forces that the elastic body would answer them with. That is
+//! known on y, where it is the contact forces F = -R, and so, by the same recursion as that of the displacements, on all:
+//!
+//! ```text
+//! F = mu_0 S u + sum_i mu_i S z_i+,     S z_i+ = decay_i S z_i + gain_i (S u+ - S u)
+//! ```
 
-use super::super::BulkFields;
+use std::rc::Rc;
+
 use super::super::face::ContactFace;
+use super::super::{BulkFields, Work};
 use super::Backing;
 use super::compliance::Compliance;
 use super::interior::Interior;
-use crate::bulk::{Arms, Series};
+use crate::bulk::{Account, Arms, Series};
+use crate::energy::BodyEnergy;
 use crate::error::Result;
 use crate::interface::Residual;
 use crate::petsc::{Step, Vector};
@@ -28,7 +38,7 @@ pub struct Relaxation {
 /// A body that follows its face.
 pub struct Following {
     /// The elastic compliance at the instantaneous moduli, on rank 0.
-    pub compliance: Option<Compliance>,
+    pub compliance: Option<Rc<Compliance>>,
     /// Its largest entry, m per N/m, on all ranks.
     pub softness: f64,
     /// None = elastic.
@@ -37,6 +47,19 @@ pub struct Following {
     pub interior: Interior,
     /// c for the step that was prepared; 1 without memory.
     pub secant: f64,
+    /// Only where the energy is asked for.
+    pub account: Option<FaceAccount>,
+}
+
+/// The energy of a body that follows its face.
+pub struct FaceAccount {
+    /// One part.
+    account: Account,
+    /// F, N/m
+    forces: Vector,
+    /// S u and S z_i, N/m; none without memory.
+    loads: Option<Arms>,
+    work: Vector,
 }
 
 impl Backing for Following {
@@ -59,7 +82,7 @@ impl Backing for Following {
     }
 
     fn compliance(&self) -> Option<&Compliance> {
-        self.compliance.as_ref()
+        self.compliance.as_deref()
     }
 
     fn softness(&self) -> f64 {
@@ -70,16 +93,45 @@ impl Backing for Following {
         false
     }
 
-    fn commit(&mut self, step: Step, u: &Vector, _residual: &Residual) -> Result<()> {
+    fn work(&self) -> Work {
+        let memory_fields = self.relaxation.as_ref().map_or(0, |relaxation| relaxation.arms.len());
+        Work { memory_fields, ..Work::default() }
+    }
+
+    fn keep_account(&mut self, layout: &Vector) -> Result<()> {
+        let arms = self.relaxation.as_ref().map(|relaxation| &relaxation.arms);
+        self.account = Some(FaceAccount {
+            account: Account::new(std::iter::once(arms.map_or(0, Arms::len))),
+            forces: layout.like()?,
+            loads: arms.map(|arms| arms.at_rest(layout)).transpose()?,
+            work: layout.like()?,
+        });
+        Ok(())
+    }
+
+    fn energy(&self) -> Option<BodyEnergy> {
+        self.account.as_ref().map(|kept| kept.account.energy())
+    }
+
+    fn commit(&mut self, step: Step, u: &Vector, residual: &Residual) -> Result<()> {
+        if let Some(account) = &mut self.account {
+            account.spend(self.relaxation.as_mut(), step, u, residual)?;
+        }
         self.relaxation.as_mut().map_or(Ok(()), |relaxation| relaxation.arms.commit(step, u))
     }
 
     fn save(&mut self, order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()> {
-        self.relaxation.as_ref().map_or(Ok(()), |relaxation| relaxation.arms.save(order, snapshot))
+        if let Some(account) = &self.account {
+            account.save(order, snapshot)?;
+        }
+        self.relaxation.as_ref().map_or(Ok(()), |relaxation| relaxation.arms.save("arm", order, snapshot))
     }
 
     fn restore(&mut self, order: &NaturalOrder, snapshot: &Snapshot, u: &Vector) -> Result<()> {
-        self.relaxation.as_mut().map_or(Ok(()), |relaxation| relaxation.arms.restore(order, snapshot, u))
+        if let Some(account) = &mut self.account {
+            account.restore(order, snapshot)?;
+        }
+        self.relaxation.as_mut().map_or(Ok(()), |relaxation| relaxation.arms.restore("arm", order, snapshot, u))
     }
 
     fn bulk_fields(&mut self, face: &mut ContactFace, u: &Vector) -> Result<BulkFields> {
@@ -89,5 +141,46 @@ impl Backing for Following {
             None => None,
         };
         self.interior.fields(&displacement, effective.as_deref())
+    }
+}
+
+impl FaceAccount {
+    /// Takes the account to the end of an accepted step that ends at `u` under the contact forces -`residual`.
+    fn spend(
+        &mut self,
+        relaxation: Option<&mut Relaxation>,
+        step: Step,
+        u: &Vector,
+        residual: &Residual,
+    ) -> Result<()> {
+        let Self { account: Account { parts, dissipated }, forces, loads, work } = self;
+        // On all ranks: PETSc keeps norms until it sees a vector written to, on each rank for itself.
+        let entries = residual.iter().flat_map(|force| [-force.x, -force.y]);
+        forces.view_mut()?.iter_mut().zip(entries).for_each(|(place, force)| *place = force);
+        match (relaxation, loads) {
+            (Some(Relaxation { arms, series }), Some(loads)) => {
+                work.copy_from(loads.answering(series, step, forces)?)?;
+                *dissipated += arms.spend(series, step, u, loads.change(work)?, &mut parts[0])?;
+                loads.commit(step, work)
+            }
+            _ => {
+                parts[0].long_term = 0.5 * u.dot(forces)?;
+                Ok(())
+            }
+        }
+    }
+
+    fn save(&self, order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()> {
+        self.account.save(snapshot);
+        let Some(loads) = &self.loads else { return Ok(()) };
+        order.save("load", loads.last(), snapshot)?;
+        loads.save("load", order, snapshot)
+    }
+
+    fn restore(&mut self, order: &NaturalOrder, snapshot: &Snapshot) -> Result<()> {
+        self.account.restore(snapshot)?;
+        let Some(loads) = &mut self.loads else { return Ok(()) };
+        order.restore("load", &mut self.work, snapshot)?;
+        loads.restore("load", order, snapshot, &self.work)
     }
 }

@@ -31,11 +31,6 @@ impl Interior {
         Self { comm: comm.duplicate(), solid, recovery: None }
     }
 
-    /// How often the interior was recovered: 0 or 1 factorisation.
-    pub fn is_recovered(&self) -> bool {
-        self.recovery.is_some()
-    }
-
     /// The fields of the body for given displacements and effective displacements (mu_0 u + sum mu_i z_i; none = the
     /// displacements) of the face: x, z of each node, m, the same on all ranks.
     pub fn fields(&mut self, displacement: &[f64], effective: Option<&[f64]>) -> Result<BulkFields> {

@@ -13,26 +13,34 @@
 
 mod compliance;
 mod following;
+mod fourier;
 mod interior;
+mod layered;
 mod newton;
 mod remembering;
+mod sparse;
 mod start;
+mod waves;
 
 use super::face::ContactFace;
-use super::{BulkFields, Contact, TransientProblem};
+use super::{BulkFields, Contact, TransientProblem, Work};
+use crate::energy::{BodyEnergy, Energy};
 use crate::error::Result;
 use crate::interface::{Interface, Residual};
 use crate::loading::Phase;
 use crate::petsc::{Gather, Matrix, Step, Vector, Verdict};
 use crate::snapshot::{NaturalOrder, Snapshot};
+use fourier::Fourier;
 
 pub use compliance::Compliance;
 pub use following::{Following, Relaxation};
 pub use interior::Interior;
-pub use remembering::{PeriodicColumn, Remembering, Source};
+pub use layered::{Layered, PeriodicColumn, Relaxations};
+pub use remembering::{Inside, Remembering};
+pub use sparse::Sparse;
 pub use start::Station;
 
-use newton::{Factor, SparseColumns};
+pub(super) use newton::{Factor, SparseColumns};
 
 /// What stands behind the face. All ranks call each method together; the compliance is on rank 0.
 pub trait Backing {
@@ -46,9 +54,15 @@ pub trait Backing {
     fn compliance(&self) -> Option<&Compliance>;
     /// The largest entry of C, m per N/m, on all ranks.
     fn softness(&self) -> f64;
-    /// Whether [`Self::commit`] needs the contact forces, and [`Self::free`] no rate.
+    /// Whether the memory needs the contact forces, and [`Self::free`] no rate.
     fn takes_forces(&self) -> bool;
-    /// Takes the memory to the end of an accepted step that ends at `u` under the contact forces -`residual`.
+    /// What the body did: its memory, and its solves.
+    fn work(&self) -> Work;
+    /// Keeps account of the energy from here on, at rest; `layout` is that of the face.
+    fn keep_account(&mut self, layout: &Vector) -> Result<()>;
+    /// The energy at the accepted state, where it is kept account of.
+    fn energy(&self) -> Option<BodyEnergy>;
+    /// Takes memory and account to the end of an accepted step that ends at `u` under the contact forces -`residual`.
     fn commit(&mut self, step: Step, u: &Vector, residual: &Residual) -> Result<()>;
     /// Adds the memory to a snapshot; `order` is that of the face.
     fn save(&mut self, order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()>;
@@ -65,6 +79,8 @@ pub struct Condensed<B> {
     tolerance: f64,
     columns: SparseColumns,
     factor: Option<Factor>,
+    /// Instead of a factor, on a large periodic face.
+    fourier: Option<Fourier>,
     /// The secant that the factor was made with.
     factored: f64,
     /// The step that the factor was made for.
@@ -73,10 +89,12 @@ pub struct Condensed<B> {
     used: usize,
     /// Whether a factor may serve for later tangents.
     reuse: bool,
+    /// How often bulk fields were asked for.
+    recoveries: usize,
 }
 
-/// Faces with more components than this are solved by GMRES with an older factor, so that a step costs the square of
-/// the components in contact and not the cube.
+/// Faces with more components than this are solved by GMRES: of a periodic layer with a preconditioner by Fourier
+/// transforms, else with an older factor, so that a step costs the square of the components in contact and not the cube.
 pub const LARGE_FACE: usize = 1200;
 /// More applications of an old factor than this in one solve, and a new one is made.
 const STALE_AFTER: usize = 10;
@@ -91,10 +109,12 @@ impl<B: Backing> Condensed<B> {
             tolerance,
             columns: SparseColumns::default(),
             factor: None,
+            fourier: None,
             factored: f64::NAN,
             factored_for: Step { t: 0.0, dt: 0.0 },
             used: 0,
             reuse: 2 * held.len() > LARGE_FACE,
+            recoveries: 0,
         })
     }
 }
@@ -105,9 +125,18 @@ impl<B: Backing> Condensed<B> {
         let mut values = f.view_mut()?;
         if let Some(compliance) = self.backing.compliance() {
             let forces = self.face.residual.iter().enumerate().flat_map(|(i, r)| [(2 * i, r.x), (2 * i + 1, r.y)]);
-            compliance.add_displacements(forces, &mut values);
+            compliance.add_displacements(forces, &mut values)?;
         }
         Ok(())
+    }
+
+    /// Whether taking `correction` off leaves less of an imbalance; on the rank that has them.
+    fn lessens(&mut self, correction: &Vector, imbalance: &Vector) -> Result<bool> {
+        let mut product = correction.like()?;
+        self.multiply(correction, &mut product)?;
+        let (before, product) = (imbalance.view()?, product.view()?);
+        let left: f64 = before.iter().zip(product.iter()).map(|(g, p)| (g - p).powi(2)).sum();
+        Ok(left < before.iter().map(|g| g * g).sum())
     }
 
     /// Brings the contact forces of the accepted state to balance with its displacements: R + T d with
@@ -118,8 +147,11 @@ impl<B: Backing> Condensed<B> {
         // A backing that takes forces does not ask for the rate.
         self.backing.free(step, u, u, &mut imbalance)?;
         self.add_contact(&mut imbalance)?;
-        if self.factor.is_some() {
+        if self.factor.is_some() || self.fourier.is_some() {
             self.solve(&imbalance, &mut correction)?;
+            if self.fourier.is_some() && !self.lessens(&correction, &imbalance)? {
+                return Ok(());
+            }
             let d = correction.view()?;
             for (row, force) in self.columns.multiply(|place| -d[place]) {
                 self.face.residual[row / 2][row % 2] += force;
@@ -170,6 +202,12 @@ impl<B: Backing> TransientProblem for Condensed<B> {
         // What is below round-off beside c 1.
         let negligible = 1e-17 * secant / self.backing.softness();
         self.columns = SparseColumns::new(&self.face.tangent, &self.face.interface().face().edges, negligible);
+        if self.reuse {
+            self.fourier = Fourier::new(compliance, &self.face.tangent, &self.face.interface().face().edges, secant);
+            if self.fourier.is_some() {
+                return Ok(());
+            }
+        }
         let serves = self.reuse && self.used <= STALE_AFTER && self.factored == secant && self.factor.is_some();
         self.used = 0;
         if !serves {
@@ -185,7 +223,7 @@ impl<B: Backing> TransientProblem for Condensed<B> {
         product.scale(self.backing.secant())?;
         let (v, mut product) = (v.view()?, product.view_mut()?);
         if let Some(compliance) = self.backing.compliance() {
-            compliance.add_displacements(self.columns.multiply(|place| v[place]), &mut product);
+            compliance.add_displacements(self.columns.multiply(|place| v[place]), &mut product)?;
         }
         Ok(())
     }
@@ -193,8 +231,9 @@ impl<B: Backing> TransientProblem for Condensed<B> {
     fn solve(&mut self, b: &Vector, x: &mut Vector) -> Result<()> {
         self.used += 1;
         let (b, mut x) = (b.view()?, x.view_mut()?);
-        match (&self.factor, self.backing.compliance()) {
-            (Some(factor), Some(compliance)) => factor.solve(compliance, &b, &mut x),
+        match (&self.fourier, &self.factor, self.backing.compliance()) {
+            (Some(fourier), _, _) => fourier.solve(&b, &mut x),
+            (None, Some(factor), Some(compliance)) => factor.solve(compliance, &b, &mut x),
             _ => {
                 x.fill(f64::NAN);
                 Ok(())
@@ -241,11 +280,22 @@ impl<B: Backing> TransientProblem for Condensed<B> {
 
     fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {
         self.face.commit(step, u)?;
-        if self.backing.takes_forces() {
+        if self.backing.takes_forces() || self.face.energy().is_some() {
             self.face.accepted_residual()?;
+        }
+        if self.backing.takes_forces() {
             self.refine_forces(step, u)?;
         }
         self.backing.commit(step, u, &self.face.residual)
+    }
+
+    fn keep_account(&mut self, layout: &Vector) -> Result<()> {
+        self.face.keep_account();
+        self.backing.keep_account(layout)
+    }
+
+    fn energy(&self) -> Option<Energy> {
+        self.face.energy().zip(self.backing.energy()).map(|(face, body)| Energy::new(face, body))
     }
 
     fn save(&mut self, u: &Vector, snapshot: &mut Snapshot) -> Result<()> {
@@ -285,6 +335,15 @@ impl<B: Backing> TransientProblem for Condensed<B> {
     }
 
     fn bulk_fields(&mut self, u: &Vector) -> Result<BulkFields> {
+        self.recoveries += 1;
         self.backing.bulk_fields(&mut self.face, u)
+    }
+
+    fn work(&self) -> Work {
+        Work {
+            tangential_laws: self.face.interface().tangential_laws(),
+            recoveries: self.recoveries,
+            ..self.backing.work()
+        }
     }
 }

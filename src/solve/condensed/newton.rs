@@ -53,6 +53,11 @@ impl SparseColumns {
         Self { places, entries }
     }
 
+    /// The rows with an entry; one may come more than once.
+    pub fn rows(&self) -> impl Iterator<Item = usize> {
+        self.entries.iter().flatten().map(|&(row, _)| row)
+    }
+
     /// T v as (row, force), for v given by component.
     pub fn multiply(&self, v: impl Fn(usize) -> f64) -> impl Iterator<Item = (usize, f64)> {
         self.places.iter().zip(&self.entries).flat_map(move |(&place, entries)| {
@@ -70,14 +75,16 @@ impl Factor {
         for (j, entries) in columns.entries.iter().enumerate() {
             let target = &mut matrix[j * order..][..order];
             for (row, t) in entries {
-                let source = compliance.column(*row);
-                for (value, &place) in target.iter_mut().zip(&columns.places) {
-                    *value += source[place] * t;
-                }
+                compliance.add_column(*row, *t, &columns.places, target);
             }
             target[j] += secant;
         }
         Ok(Self { lu: DenseLu::new(order, matrix)?, columns, secant })
+    }
+
+    /// T.
+    pub fn columns(&self) -> &SparseColumns {
+        &self.columns
     }
 
     /// Adds what the factor was made from to a snapshot: later solves depend on it by their last digits.
@@ -117,7 +124,7 @@ impl Factor {
         }
         let forces: Vec<(usize, f64)> = self.columns.multiply(|place| x[place]).collect();
         x.copy_from_slice(b);
-        compliance.add_displacements(forces.into_iter().map(|(row, force)| (row, -force)), x);
+        compliance.add_displacements(forces.into_iter().map(|(row, force)| (row, -force)), x)?;
         x.iter_mut().for_each(|value| *value /= self.secant);
         Ok(())
     }

@@ -12,8 +12,9 @@ use super::compliance::Compliance;
 use crate::element::mpjr::{Frame, Resistance};
 use crate::friction::{Friction, Slip};
 
-/// Sweeps over all points at most; it is a start only.
+/// Sweeps over all points at most, and products of a compliance and a force in all: it is a start only.
 const MOST_SWEEPS: usize = 2000;
+const MOST_PRODUCTS: usize = 500_000_000;
 
 /// A point of the contact during a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,7 +49,11 @@ impl Station {
         let mut sum = Matrix2::zeros();
         for (a, na) in self.nodes.into_iter().zip(self.shape) {
             for (b, nb) in self.nodes.into_iter().zip(self.shape) {
-                sum += Matrix2::from_fn(|i, j| compliance.column(2 * b + j)[2 * a + i]) * (na * nb);
+                let mut block = Matrix2::zeros();
+                for j in [0, 1] {
+                    compliance.add_column(2 * b + j, na * nb, &[2 * a, 2 * a + 1], block.column_mut(j).as_mut_slice());
+                }
+                sum += block;
             }
         }
         self.frame * sum * self.frame.transpose() * (self.weight / secant)
@@ -115,8 +120,10 @@ pub fn displacements(
     let (compliance, secant) = behind;
     let own: Vec<_> = stations.iter().map(|station| station.own(behind)).collect();
     let mut tractions = vec![Vector2::zeros(); stations.len()];
+    let places: Vec<usize> = (0..free.len()).collect();
+    let sweeps = (MOST_PRODUCTS / (free.len() * free.len())).clamp(10, MOST_SWEEPS);
     let u = &mut free;
-    for _ in 0..MOST_SWEEPS {
+    for _ in 0..sweeps {
         let (mut change, mut size) = (0.0, 0.0);
         for ((station, own), traction) in stations.iter().zip(&own).zip(&mut tractions) {
             let signed = |t: &Vector2<f64>| Vector2::new(t.x, -t.y);
@@ -130,11 +137,10 @@ pub fn displacements(
             }
             change += more.norm_squared();
             let force = station.frame.tr_mul(&more) * (station.weight / secant);
-            let forces = station.nodes.into_iter().zip(station.shape);
-            compliance.add_displacements(
-                forces.flat_map(|(node, share)| [(2 * node, force.x * share), (2 * node + 1, force.y * share)]),
-                u,
-            );
+            for (node, share) in station.nodes.into_iter().zip(station.shape).filter(|(_, share)| *share != 0.0) {
+                compliance.add_column(2 * node, share * force.x, &places, u);
+                compliance.add_column(2 * node + 1, share * force.y, &places, u);
+            }
         }
         if change <= 1e-24 * size {
             break;

@@ -1,0 +1,65 @@
+//! The energy balance of a run.
+//!
+//! ```text
+//! work of the indenter = stored + dissipated in the arms + dissipated by friction + penalty + imbalance
+//! ```
+//!
+//! Each term is computed for itself, so that the imbalance says how well the steps resolve the history. The contact forces
+//! are known at the ends of steps, and their work over a step is that of their mean. What the dashpots dissipate is
+//!
+//! - with the exponential memory, that of a displacement which is linear over the step: the imbalance is of second order in
+//!   dt, and of first order only from steps within which a motion sets in;
+//! - with backward Euler, that of the rate which they have at the end of the step: it is of first order.
+
+/// The energy balance, J/m, cumulative from t = 0.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Energy {
+    /// Supplied by the indenter: integral of N dD + (Q + integral of p dh/dx) ds.
+    pub external_work: f64,
+    /// Stored in the springs of the layer.
+    pub stored: f64,
+    /// Dissipated in the Prony arms.
+    pub viscoelastic_dissipation: f64,
+    /// Dissipated by friction.
+    pub friction_dissipation: f64,
+    /// Stored in the penalty.
+    pub penalty: f64,
+    /// What the others leave over of the work.
+    pub imbalance: f64,
+}
+
+/// The share of the body, J/m.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BodyEnergy {
+    /// In its springs.
+    pub stored: f64,
+    /// In its dashpots, since t = 0.
+    pub dissipated: f64,
+}
+
+/// The share of the contact face, J/m.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FaceEnergy {
+    /// Supplied by the indenter since t = 0.
+    pub work: f64,
+    /// Dissipated by friction since t = 0.
+    pub friction: f64,
+    /// In the penalty.
+    pub penalty: f64,
+}
+
+impl Energy {
+    /// The balance of the two shares.
+    pub fn new(face: FaceEnergy, body: BodyEnergy) -> Self {
+        let FaceEnergy { work, friction, penalty } = face;
+        let BodyEnergy { stored, dissipated } = body;
+        Self {
+            external_work: work,
+            stored,
+            viscoelastic_dissipation: dissipated,
+            friction_dissipation: friction,
+            penalty,
+            imbalance: work - stored - dissipated - friction - penalty,
+        }
+    }
+}

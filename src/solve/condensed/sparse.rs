@@ -1,0 +1,150 @@
+//! A body with memory of any shape: by a sparse factorisation, two solves per step.
+
+use super::super::body::Body;
+use super::super::{BulkFields, Work};
+use super::compliance::Compliance;
+use super::remembering::{Inside, Solvers};
+use crate::bulk::Bulk;
+use crate::energy::BodyEnergy;
+use crate::error::{Error, Result};
+use crate::interface::Residual;
+use crate::petsc::{Cholesky, Matrix, Step, Vector};
+use crate::snapshot::Snapshot;
+
+/// The whole body, on the one rank that solves it.
+pub struct Sparse {
+    bulk: Bulk,
+    body: Body,
+    /// First row of each face node.
+    rows: Vec<usize>,
+    kept: Vec<i32>,
+    tangent: Matrix,
+    /// The accepted displacements, m.
+    u: Vector,
+    solvers: Solvers<Solver>,
+    load: Vector,
+    free: Vector,
+    /// u0, per component of the face.
+    face: Vec<f64>,
+    zero: Vector,
+    work: Vector,
+    done: Work,
+}
+
+/// A at one step length.
+struct Solver {
+    factor: Cholesky,
+    compliance: Compliance,
+}
+
+impl Sparse {
+    /// At rest; both made for this rank alone.
+    pub fn new(bulk: Bulk, body: Body) -> Result<Self> {
+        let (mesh, numbering) = (body.mesh(), body.numbering());
+        let rows: Vec<usize> =
+            mesh.face.unknown.iter().map(|&unknown| 2 * numbering.global[unknown as usize] as usize).collect();
+        let kept = Compliance::free_rows(&body).into_iter().map(|(_, row)| row).collect();
+        let mut tangent = bulk.new_tangent()?;
+        tangent.declare_positive_definite()?;
+        let vector = || body.vector();
+        Ok(Self {
+            u: vector()?,
+            load: vector()?,
+            free: vector()?,
+            zero: vector()?,
+            work: vector()?,
+            done: Work::default(),
+            face: vec![0.0; 2 * rows.len()],
+            solvers: Solvers::new(),
+            bulk,
+            rows,
+            kept,
+            tangent,
+            body,
+        })
+    }
+}
+
+impl Inside for Sparse {
+    fn prepare(&mut self, step: Step) -> Result<()> {
+        let Self { solvers, bulk, tangent, kept, body, done, .. } = self;
+        solvers.select(step.dt, || {
+            done.factorisations += 1;
+            bulk.tangent(step.dt, tangent)?;
+            let (factor, inverse) = Cholesky::with_inverse_schur(tangent, kept)?;
+            Ok(Solver { factor, compliance: Compliance::from_free(body, &inverse) })
+        })?;
+        // h_p is y_p at u = 0, where du/dt = -u_n / dt.
+        self.work.copy_from(&self.u)?;
+        self.work.scale(-1.0 / step.dt)?;
+        self.bulk.force(step, &self.zero, &self.work, &mut self.load)?;
+        self.load.scale(-1.0)?;
+        self.solvers.current().ok_or_else(unprepared)?.factor.solve(&self.load, &mut self.free)?;
+        self.done.solves += 1;
+        let values = self.free.view()?;
+        for (pair, &row) in self.face.chunks_exact_mut(2).zip(&self.rows) {
+            pair.copy_from_slice(&values[row..row + 2]);
+        }
+        Ok(())
+    }
+
+    fn face(&self) -> &[f64] {
+        &self.face
+    }
+
+    fn compliance(&self) -> Option<&Compliance> {
+        self.solvers.current().map(|solver| &solver.compliance)
+    }
+
+    fn work(&self) -> Work {
+        Work { memory_fields: self.bulk.memory_vectors(), ..self.done }
+    }
+
+    fn keep_account(&mut self) {
+        self.bulk.keep_account();
+    }
+
+    fn energy(&self) -> Option<BodyEnergy> {
+        self.bulk.energy()
+    }
+
+    /// u = A^-1 (b - P R), and the arms with it.
+    fn commit(&mut self, step: Step, residual: &Residual) -> Result<()> {
+        let mut load = self.load.view_mut()?;
+        for (force, &row) in residual.iter().zip(&self.rows) {
+            load[row] -= force.x;
+            load[row + 1] -= force.y;
+        }
+        drop(load);
+        self.solvers.current().ok_or_else(unprepared)?.factor.solve(&self.load, &mut self.u)?;
+        self.done.solves += 1;
+        self.bulk.commit(step, &self.u)
+    }
+
+    fn save(&self, snapshot: &mut Snapshot) -> Result<()> {
+        let mut order = self.body.natural_order(&self.u)?;
+        order.save("body", &self.u, snapshot)?;
+        self.bulk.save(&mut order, snapshot)
+    }
+
+    fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
+        let order = self.body.natural_order(&self.u)?;
+        order.restore("body", &mut self.u, snapshot)?;
+        self.bulk.restore(&order, snapshot, &self.u)
+    }
+
+    fn fields(&mut self) -> Result<BulkFields> {
+        let Self { bulk, body, u, .. } = self;
+        let mut effective = Vec::new();
+        bulk.effective(u, |y| {
+            effective.push(body.around(y)?);
+            Ok(())
+        })?;
+        body.fields(u, &effective)
+    }
+}
+
+/// A defect: nothing was factorised.
+pub fn unprepared() -> Error {
+    Error::Internal("no step was prepared".into())
+}

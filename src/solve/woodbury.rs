@@ -1,0 +1,142 @@
+//! Solves with the monolithic tangent by a factor of the bulk alone (Sherman, Morrison and Woodbury).
+//!
+//! The tangent is J = A + P T P', with A the bulk's at this step length, T the contact's and P from the face into the
+//! body. A changes with the step length only, and only by a factor where all moduli relax alike, A = l A0. So one
+//! Cholesky factorisation serves for every Newton iteration and step, with friction or without:
+//!
+//! ```text
+//! (l + C T) x_G = (A0^-1 b)_G,     x = A0^-1 (b - P T x_G) / l,     C = (A0^-1)_GG
+//! ```
+//!
+//! C is had by blocks of columns, when a node of theirs first comes into contact. What round-off leaves is for the
+//! Krylov method around it. Nothing here depends on earlier steps, to the last digit.
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use super::condensed::{Compliance, Factor, SparseColumns};
+use super::face::ContactFace;
+use crate::bulk::Bulk;
+use crate::error::{Error, Result};
+use crate::petsc::{Cholesky, Matrix, Vector};
+
+/// Columns of C that are had together, which takes a fraction of the time of as many single solves.
+const BLOCK: usize = 32;
+
+/// J^-1.
+pub struct Woodbury {
+    comm: SimpleCommunicator,
+    /// Per component of the face, its global row, and its local one where this rank owns it.
+    rows: Vec<(i32, Option<usize>)>,
+    base: Option<Base>,
+    /// The contact at the last tangent; none = not factorised since.
+    contact: Option<Factor>,
+    work: Vector,
+    /// Factorisations, and solves with them.
+    pub done: [usize; 2],
+}
+
+/// A0 and C.
+struct Base {
+    /// The secant of each part of the bulk over that of the first.
+    ratios: Vec<f64>,
+    factor: Cholesky,
+    compliance: Compliance,
+    /// Which of its columns are known.
+    known: Vec<bool>,
+    /// l of the last tangent: the secant of the first part.
+    scale: f64,
+}
+
+impl Woodbury {
+    /// Costs nothing until the first solve.
+    pub fn new(comm: &SimpleCommunicator, rows: Vec<(i32, Option<usize>)>, layout: &Vector) -> Result<Self> {
+        Ok(Self { comm: comm.duplicate(), rows, base: None, contact: None, work: layout.like()?, done: [0; 2] })
+    }
+
+    /// To be called when the contact's tangent has changed.
+    pub fn renew(&mut self) {
+        self.contact = None;
+    }
+
+    /// x = J^-1 b at step length `dt` and the face's tangent. Collective.
+    pub fn solve(
+        &mut self,
+        (bulk, dt): (&Bulk, f64),
+        face: &mut ContactFace,
+        b: &Vector,
+        x: &mut Vector,
+    ) -> Result<()> {
+        if self.contact.is_none() {
+            self.factorise(bulk, dt)?;
+            self.update(face)?;
+        }
+        let (Some(base), Some(contact)) = (&self.base, &self.contact) else {
+            return Err(Error::Internal("no factor of the bulk".into()));
+        };
+        base.factor.solve(b, x)?;
+        let right = face.gather(x)?;
+        let mut on_face = vec![0.0; right.len()];
+        contact.solve(&base.compliance, &right, &mut on_face)?;
+        self.work.copy_from(b)?;
+        let mut load = self.work.view_mut()?;
+        for (place, force) in contact.columns().multiply(|place| on_face[place]) {
+            if let (_, Some(row)) = self.rows[place] {
+                load[row] -= force;
+            }
+        }
+        drop(load);
+        base.factor.solve(&self.work, x)?;
+        self.done[1] += 2;
+        x.scale(1.0 / base.scale)
+    }
+
+    /// Makes A0 serve for the step length.
+    fn factorise(&mut self, bulk: &Bulk, dt: f64) -> Result<()> {
+        let secants = bulk.secants(dt);
+        let scale = secants[0];
+        let ratios: Vec<f64> = secants.iter().map(|secant| secant / scale).collect();
+        if let Some(base) = self.base.as_mut().filter(|base| base.ratios == ratios) {
+            base.scale = scale;
+            return Ok(());
+        }
+        // Frees the old factor before the new one is made.
+        self.base = None;
+        let mut matrix: Matrix = bulk.new_tangent()?;
+        matrix.declare_positive_definite()?;
+        bulk.sum(&ratios, &mut matrix)?;
+        self.done[0] += 1;
+        self.base = Some(Base {
+            ratios,
+            factor: Cholesky::new(&matrix)?,
+            compliance: Compliance::unknown(self.rows.len()),
+            known: vec![false; self.rows.len()],
+            scale,
+        });
+        Ok(())
+    }
+
+    /// Makes `contact` hold for the face's tangent.
+    fn update(&mut self, face: &mut ContactFace) -> Result<()> {
+        let Some(base) = &mut self.base else { return Ok(()) };
+        let columns = SparseColumns::new(&face.tangent, &face.interface().face().edges, 0.0);
+        // In whole blocks, always the same ones: then a column has the same digits whatever came before it.
+        let order = base.known.len();
+        for first in (0..order).step_by(BLOCK) {
+            let block = first..order.min(first + BLOCK);
+            if !columns.rows().any(|row| block.contains(&row) && !base.known[row]) {
+                continue;
+            }
+            let rows: Vec<(i32, bool)> =
+                self.rows[block.clone()].iter().map(|(row, own)| (*row, own.is_some())).collect();
+            base.factor.solve_units(&self.comm, &rows, |index, column| {
+                base.known[first + index] = true;
+                base.compliance.set_column(first + index, &face.gather(column)?);
+                Ok(())
+            })?;
+            self.done[1] += block.len();
+        }
+        self.contact = Some(Factor::new(&base.compliance, columns, base.scale)?);
+        Ok(())
+    }
+}
