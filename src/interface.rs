@@ -17,6 +17,7 @@ use crate::loading::Placement;
 use crate::mesh::Face;
 use crate::profile::{Elevation, Profile};
 use crate::snapshot::Snapshot;
+use crate::solve::Station;
 
 use augmentation::{Augmentation, Multipliers};
 use sites::{Point, Sites};
@@ -359,7 +360,42 @@ impl Interface {
             (point.weight * length).powi(2)
         };
         let sum: f64 = self.acting.points.iter().zip(&self.acting.elevations).map(square).sum();
-        f64::EPSILON * self.penalty() * sum.sqrt()
+        let normal = f64::EPSILON * self.penalty() * sum.sqrt();
+        let Placement { approach, sliding_rate, dt, .. } = placement;
+        if self.laws.friction.is_none() || dt == 0.0 {
+            return normal;
+        }
+        let shear = |answer: Answer<'_>| {
+            let moved = (answer.point.frame * surface.at(answer.point.nodes, answer.point.shape).displacement).x.abs();
+            let rate = moved.max(approach.abs()) / dt + sliding_rate.abs();
+            (answer.point.weight * answer.traction.shear.by_rate * rate).powi(2)
+        };
+        let sum: f64 = self.answers(&self.acting, placement, surface).map(shear).sum();
+        normal.hypot(f64::EPSILON * sum.sqrt())
+    }
+
+    /// The points of the contact in a step to `placement` from the accepted state `surface`.
+    pub fn stations(&mut self, placement: Placement, surface: &Surface) -> Result<Vec<Station>> {
+        self.attempt(placement)?;
+        let at_rest = Surface { displacement: surface.displacement.clone(), rate: vec![0.0; surface.rate.len()] };
+        let penalty = self.penalty();
+        let multipliers = self.augmentation.as_ref().map(|augmentation| &augmentation.multipliers().pressure);
+        let station = |(i, (point, motion)): (usize, (&Point, Motion))| Station {
+            nodes: point.nodes,
+            shape: point.shape,
+            weight: point.weight,
+            frame: point.frame,
+            clearance: motion.clearance,
+            before: (point.frame * surface.at(point.nodes, point.shape).displacement).x,
+            slip: motion.slip,
+            resistance: Resistance { penalty, multiplier: multipliers.map_or(0.0, |all| all[i]) },
+        };
+        Ok(self.acting.motions(placement, &at_rest).enumerate().map(station).collect())
+    }
+
+    /// The largest stiffness of a point, N/m per m.
+    pub fn stiffest(&self) -> f64 {
+        self.penalty() * self.acting.points.iter().fold(0.0, |most: f64, point| most.max(point.weight))
     }
 
     /// alpha, Pa/m

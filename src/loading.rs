@@ -15,6 +15,8 @@ pub struct Placement {
     pub approach_rate: f64,
     /// The length of the step, s; 0 at an accepted state, whose step is over.
     pub dt: f64,
+    /// Slip rates, m/s, that are too close to tell apart by displacements over the step.
+    pub resolution: f64,
 }
 
 /// Tangential motion of one phase, relative to where the phase found the indenter.
@@ -110,9 +112,14 @@ impl Phase {
         let approach = from + (to - from) * fraction;
         let approach_rate = (to - from) / self.duration;
         match self.motion {
-            Motion::Velocity(v) => {
-                Placement { approach, sliding: self.sliding + v * local, sliding_rate: v, approach_rate, dt }
-            }
+            Motion::Velocity(v) => Placement {
+                approach,
+                sliding: self.sliding + v * local,
+                sliding_rate: v,
+                approach_rate,
+                dt,
+                resolution: 0.0,
+            },
             Motion::Sinusoid { amplitude, cycles } => {
                 let angular = 2.0 * PI * cycles / self.duration;
                 // sin a - sin b = 2 cos((a + b)/2) sin((a - b)/2) keeps the digits of short steps.
@@ -124,6 +131,7 @@ impl Phase {
                     sliding_rate: amplitude * 2.0 * middle * half.sin() / dt,
                     approach_rate,
                     dt,
+                    resolution: 0.0,
                 }
             }
         }

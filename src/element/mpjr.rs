@@ -70,6 +70,8 @@ pub struct Over {
     pub velocity: Vector2<f64>,
     /// The length of the step, s; 0 where it is over.
     pub dt: f64,
+    /// See [`Slip::resolution`], m/s.
+    pub resolution: f64,
 }
 
 /// The layer at one point of the face, in (x, z).
@@ -97,7 +99,7 @@ impl Motion {
     pub fn new(frame: &Frame, over: Over, under: Under, stuck: f64) -> Self {
         let displacement = frame * under.displacement;
         let rate = (frame * (over.velocity - under.rate)).x;
-        let slip = Slip { rate, dt: over.dt, stuck };
+        let slip = Slip { rate, dt: over.dt, stuck, resolution: over.resolution };
         Self { clearance: over.clearance * frame[(1, 1)], normal: displacement.y, slip }
     }
 
@@ -175,7 +177,7 @@ mod tests {
             ] {
                 let resistance = Resistance { penalty: 1e6, multiplier };
                 let at = |u: Vector2<f64>| {
-                    let slip = Slip { rate: drive - u.x / dt, dt, stuck };
+                    let slip = Slip { rate: drive - u.x / dt, dt, stuck, resolution: 0.0 };
                     traction(Motion { clearance, normal: u.y, slip }, resistance, law)
                 };
                 let u = Vector2::new(ut, un);

@@ -14,15 +14,16 @@ pub struct CoulombTanh {
 impl CoulombTanh {
     /// A point sticks where |w| < eps, that is |q| < tanh(1) f p = 0.76 f p, and creeps meanwhile; `stuck` is the slip
     /// since it began to.
-    pub(super) fn shear(&self, pressure: f64, Slip { rate, dt, stuck }: Slip) -> Shear {
-        let x = rate / self.regularisation;
+    pub(super) fn shear(&self, pressure: f64, slip: Slip) -> Shear {
+        let (Slip { rate, dt, stuck, .. }, sharpness) = (slip, self.sharpness(slip));
+        let x = rate / sharpness;
         let direction = x.tanh();
-        let sech = self.sech(rate);
+        let sech = self.sech(slip);
         let sticks = x.abs() < 1.0;
         Shear {
             shear: self.coefficient * pressure * direction,
             by_pressure: self.coefficient * direction,
-            by_rate: self.coefficient * pressure * sech * sech / self.regularisation,
+            by_rate: self.coefficient * pressure * sech * sech / sharpness,
             stuck: if sticks { stuck + rate * dt } else { 0.0 },
             sticks,
         }
@@ -30,21 +31,26 @@ impl CoulombTanh {
 
     /// It creeps on; at a turn of the indenter it sticks. From the steep side of the law Newton's method lets point after
     /// point slip; from the flat side it does not find back.
-    pub(super) fn expected(&self, Slip { rate, .. }: Slip, drive: f64) -> Option<f64> {
-        if drive * rate < 0.0 {
+    pub(super) fn expected(&self, slip: Slip, drive: f64) -> Option<f64> {
+        if drive * slip.rate < 0.0 {
             return Some(0.0);
         }
-        (self.sech(rate).powi(2) > 1e-6).then_some(rate)
+        (self.sech(slip).powi(2) > 1e-6).then_some(slip.rate)
     }
 
     /// Which way a point slips that the law does not answer to any more; 0 where it does.
-    pub(super) fn direction(&self, Slip { rate, .. }: Slip) -> f64 {
-        if rate.abs() < self.regularisation { 0.0 } else { rate.signum() }
+    pub(super) fn direction(&self, slip: Slip) -> f64 {
+        if slip.rate.abs() < self.sharpness(slip) { 0.0 } else { slip.rate.signum() }
+    }
+
+    /// eps as far as it can be resolved, m/s.
+    pub(super) fn sharpness(&self, slip: Slip) -> f64 {
+        self.regularisation.max(slip.resolution)
     }
 
     /// sech(w / eps), without the cancellation of 1 - tanh^2 and without overflow.
-    fn sech(&self, rate: f64) -> f64 {
-        let x = rate / self.regularisation;
+    fn sech(&self, slip: Slip) -> f64 {
+        let x = slip.rate / self.sharpness(slip);
         if x.abs() > 350.0 { 0.0 } else { 1.0 / x.cosh() }
     }
 }

@@ -23,7 +23,7 @@ pub struct ElasticSlip {
 
 impl ElasticSlip {
     /// `stuck` is e; the rest of the slip, w dt - (e - e_n), is what dissipates.
-    pub(super) fn shear(&self, pressure: f64, Slip { rate, dt, stuck }: Slip) -> Shear {
+    pub(super) fn shear(&self, pressure: f64, Slip { rate, dt, stuck, .. }: Slip) -> Shear {
         let Self { coefficient, elastic_slip } = *self;
         let trial = stuck + rate * dt;
         let sticks = trial.abs() < elastic_slip;
@@ -39,7 +39,7 @@ impl ElasticSlip {
     }
 
     /// Which way a point slips; 0 where it sticks.
-    pub(super) fn direction(&self, Slip { rate, dt, stuck }: Slip) -> f64 {
+    pub(super) fn direction(&self, Slip { rate, dt, stuck, .. }: Slip) -> f64 {
         let trial = stuck + rate * dt;
         if trial.abs() < self.elastic_slip { 0.0 } else { trial.signum() }
     }

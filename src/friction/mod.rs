@@ -1,5 +1,7 @@
 //! Friction laws: pressure and slip in, shear traction and its derivatives out.
 
+use nalgebra::Vector2;
+
 mod coulomb_tanh;
 mod elastic_slip;
 
@@ -24,6 +26,8 @@ pub struct Slip {
     pub dt: f64,
     /// What [`Shear::stuck`] was at the beginning of the step, m.
     pub stuck: f64,
+    /// A regularisation sharper than this, m/s, is beyond the digits of the slip rate, and this takes its place.
+    pub resolution: f64,
 }
 
 /// The shear traction, its derivatives, and what the law remembers.
@@ -77,6 +81,23 @@ impl Friction {
         }
     }
 
+    /// The slip rate, m/s, over which the traction turns from one way to the other in a step of `dt`, s.
+    pub fn sharpness(&self, dt: f64) -> f64 {
+        match self {
+            Self::CoulombTanh(law) => law.regularisation,
+            Self::ElasticSlip(law) => law.elastic_slip / dt,
+        }
+    }
+
+    /// The slip rate, m/s, at which the traction is q under the pressure p, given as (q, p), Pa; none where it slips.
+    pub fn rate(&self, traction: Vector2<f64>, slip: Slip) -> Option<f64> {
+        let share = traction.x / (self.coefficient() * traction.y);
+        (share.abs() < 1.0 - 1e-9).then(|| match self {
+            Self::CoulombTanh(law) => law.sharpness(slip) * share.atanh(),
+            Self::ElasticSlip(law) => (share * law.elastic_slip - slip.stuck) / slip.dt,
+        })
+    }
+
     /// The slip rate, m/s, that a Newton step had better take a point to which it takes from one slip to another; none
     /// where that is good enough.
     ///
@@ -106,7 +127,7 @@ mod tests {
     fn bounded_by_coulomb_and_odd() {
         for law in laws() {
             for rate in [0.0, 1e-300, 1e-9, 1e-6, 1e-3, 1.0, 1e9, f64::MAX] {
-                let at = |rate, stuck| law.shear(3.0, Slip { rate, dt: 0.1, stuck });
+                let at = |rate, stuck| law.shear(3.0, Slip { rate, dt: 0.1, stuck, resolution: 0.0 });
                 let (plus, minus) = (at(rate, 3e-8), at(-rate, -3e-8));
                 assert!(plus.shear.abs() <= law.coefficient() * 3.0 && plus.shear == -minus.shear);
                 assert!(plus.by_rate >= 0.0 && plus.by_rate.is_finite() && plus.by_rate == minus.by_rate);
@@ -120,8 +141,10 @@ mod tests {
     fn derivatives_are_those_of_the_traction() {
         for law in laws() {
             for (rate, stuck) in [(0.0, 0.0), (4e-7, 3e-8), (-4e-7, 9e-8), (2e-6, 9e-8), (-5e-6, 1e-7), (3e-8, -1e-7)] {
-                let at = |dp: f64, dw: f64| law.shear(3.0 + dp, Slip { rate: rate + dw, dt: 0.1, stuck }).shear;
-                let exact = law.shear(3.0, Slip { rate, dt: 0.1, stuck });
+                let at = |dp: f64, dw: f64| {
+                    law.shear(3.0 + dp, Slip { rate: rate + dw, dt: 0.1, stuck, resolution: 0.0 }).shear
+                };
+                let exact = law.shear(3.0, Slip { rate, dt: 0.1, stuck, resolution: 0.0 });
                 let by_pressure = (at(1e-3, 0.0) - at(-1e-3, 0.0)) / 2e-3;
                 let by_rate = (at(0.0, 1e-11) - at(0.0, -1e-11)) / 2e-11;
                 assert!((by_pressure - exact.by_pressure).abs() < 1e-9, "{law:?} {rate} {stuck}");
@@ -135,8 +158,8 @@ mod tests {
     fn a_step_that_is_over_keeps_its_traction() {
         for law in laws() {
             for (rate, stuck) in [(4e-7, 3e-8), (-4e-7, 9e-8), (2e-6, 9e-8), (-5e-6, 1e-7)] {
-                let end = law.shear(3.0, Slip { rate, dt: 0.1, stuck });
-                let after = law.shear(3.0, Slip { rate, dt: 0.0, stuck: end.stuck });
+                let end = law.shear(3.0, Slip { rate, dt: 0.1, stuck, resolution: 0.0 });
+                let after = law.shear(3.0, Slip { rate, dt: 0.0, stuck: end.stuck, resolution: 0.0 });
                 assert_eq!((after.shear, after.stuck, after.sticks), (end.shear, end.stuck, end.sticks));
             }
         }

@@ -112,7 +112,7 @@ mod tests {
     use super::*;
 
     const PLACEMENT: Placement =
-        Placement { approach: 1e-3, sliding: 0.0, sliding_rate: 0.0, approach_rate: 0.0, dt: 0.1 };
+        Placement { approach: 1e-3, sliding: 0.0, sliding_rate: 0.0, approach_rate: 0.0, dt: 0.1, resolution: 0.0 };
 
     /// Two points on springs of compliance C, pressed 1 mm deep: p = (lambda + alpha D)/(1 + alpha C), in the end D/C.
     #[test]

@@ -72,7 +72,7 @@ impl Sites {
         let velocity = Vector2::new(placement.sliding_rate, -placement.approach_rate);
         self.points.iter().zip(&self.elevations).zip(&self.stuck).map(move |((point, elevation), &stuck)| {
             let clearance = elevation.height - placement.approach + point.recess;
-            let over = Over { clearance, velocity, dt: placement.dt };
+            let over = Over { clearance, velocity, dt: placement.dt, resolution: placement.resolution };
             let under = surface.at(point.nodes, point.shape);
             (point, Motion::new(&point.frame, over, under, stuck))
         })

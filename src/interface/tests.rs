@@ -19,7 +19,7 @@ fn with_law(quadrature: Quadrature, sides: Sides, friction: Friction) -> Interfa
 }
 
 fn placement() -> Placement {
-    Placement { approach: 0.012, sliding: 0.13, sliding_rate: 0.05, approach_rate: 0.02, dt: 0.1 }
+    Placement { approach: 0.012, sliding: 0.13, sliding_rate: 0.05, approach_rate: 0.02, dt: 0.1, resolution: 0.0 }
 }
 
 /// A wavy surface whose rates follow its displacements at `shift`.
@@ -143,7 +143,8 @@ fn assert_tangent(interface: &mut Interface, placement: Placement) {
 fn totals_integrate_the_tractions() {
     for quadrature in [Quadrature::Nodal, Quadrature::Gauss] {
         let mut interface = interface(quadrature, Sides::Periodic);
-        let place = Placement { approach: 0.1, sliding: 0.0, sliding_rate: 1e3, approach_rate: 0.0, dt: 0.1 };
+        let place =
+            Placement { approach: 0.1, sliding: 0.0, sliding_rate: 1e3, approach_rate: 0.0, dt: 0.1, resolution: 0.0 };
         let totals = interface.totals(place, &Surface::at_rest(8)).unwrap();
         // p = alpha (D - g0 (1 - cos)), whose mean is alpha (D - g0).
         assert!((totals.normal_force - 50.0 * 0.09).abs() < 1e-13);

@@ -281,7 +281,8 @@ impl Integrator {
         check(code)?;
         if reason < 0 {
             return Err(Error::Solver(format!(
-                "no convergence in the step to t = {:.6e} s, cut down to {:.3e} s",
+                "no convergence in the step to t = {:.6e} s, cut down to {:.3e} s; more steps, friction regularised less \
+                 sharply or a softer penalty may help",
                 context.step.t, context.step.dt
             )));
         }

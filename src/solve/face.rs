@@ -4,10 +4,10 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::Contact;
+use super::{Contact, Station};
 use crate::energy::FaceEnergy;
 use crate::error::{Error, Result};
-use crate::friction::Slip;
+use crate::friction::{Friction, Slip};
 use crate::interface::{Exchange, Fields, Interface, Residual, Surface, Tangent};
 use crate::loading::{Phase, Placement};
 use crate::petsc::{Gather, Step, Vector, Verdict};
@@ -132,12 +132,29 @@ impl ContactFace {
         }
         let Fields { pressure, slip_rate, stuck, .. } = interface.fields(*placement, surface)?;
         for node in (0..prediction.len()).filter(|&node| pressure[node] > 0.0 && free[node].x > 0.0) {
-            let slip = Slip { rate: slip_rate[node], dt: 0.0, stuck: stuck[node] };
+            let slip = Slip { rate: slip_rate[node], dt: 0.0, stuck: stuck[node], resolution: 0.0 };
             if let Some(rate) = law.expected(slip, drive) {
                 prediction[node].x = (drive - rate) * step.dt;
             }
         }
         Ok(prediction)
+    }
+
+    /// Whether the laws are too stiff for Newton's method from where the face was, before a body of the given softness, m
+    /// per N/m: penalty beside the body's stiffness, or rates of the indenter beside the friction law's own.
+    pub fn is_stiff(&self, step: Step, softness: f64) -> Result<bool> {
+        const PENALTY: f64 = 1e4;
+        const RATE: f64 = 1e3;
+        let placement = self.placement(step)?;
+        let rate = placement.sliding_rate.abs().max(placement.approach_rate.abs());
+        let sharp = |law: &Friction| rate > RATE * law.sharpness(step.dt);
+        Ok(self.interface.stiffest() * softness > PENALTY || self.interface.friction().is_some_and(sharp))
+    }
+
+    /// The points of the contact in a step from the accepted state.
+    pub fn stations(&mut self, step: Step) -> Result<Vec<Station>> {
+        let placement = self.placement(step)?;
+        self.interface.stations(placement, &self.accepted.surface)
     }
 
     /// What to add to the displacements of nodes of the face, m, that a Newton step takes from `u` to `u` -
@@ -150,7 +167,7 @@ impl ContactFace {
         let from = self.surface_at(step, from);
         let to = from.displacement.iter().zip(&less).map(|(u, less)| u - less).collect();
         let to = self.surface_at(step, to);
-        let placement = self.phase()?.placement(step.t, step.dt);
+        let placement = self.placement(step)?;
         self.interface.limit(placement, [&from, &to])
     }
 
@@ -208,7 +225,7 @@ impl ContactFace {
 
     /// Takes the accepted state to the end of an accepted step.
     pub fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {
-        let placement = self.phase()?.placement(step.t, step.dt);
+        let placement = self.placement(step)?;
         let State { surface, .. } = &mut self.accepted;
         let mut before = vec![0.0; surface.displacement.len()];
         std::mem::swap(&mut before, &mut surface.displacement);
@@ -227,7 +244,7 @@ impl ContactFace {
 
     /// Whether a step that was solved by `u` must be solved again, with other multipliers.
     pub fn augment(&mut self, step: Step, u: &Vector) -> Result<bool> {
-        self.trial.placement = self.phase()?.placement(step.t, step.dt);
+        self.trial.placement = self.placement(step)?;
         self.gather.gather(u, &mut self.trial.surface.displacement)?;
         self.interface.augment(self.trial.placement, &self.trial.surface)
     }
@@ -243,8 +260,8 @@ impl ContactFace {
     /// Adds the accepted state to a snapshot; the displacements are part of the solution.
     pub fn save(&self, snapshot: &mut Snapshot) {
         let State { surface, placement, scale } = &self.accepted;
-        let Placement { approach, sliding, sliding_rate, approach_rate, dt: _ } = placement;
-        snapshot.put("face", vec![*approach, *sliding, *sliding_rate, *approach_rate, *scale]);
+        let Placement { approach, sliding, sliding_rate, approach_rate, resolution, dt: _ } = placement;
+        snapshot.put("face", vec![*approach, *sliding, *sliding_rate, *approach_rate, *resolution, *scale]);
         snapshot.put("face-rate", surface.rate.clone());
         self.interface.save(snapshot);
         if let Some(exchange) = &self.exchange {
@@ -254,8 +271,8 @@ impl ContactFace {
 
     /// Takes the accepted state, whose solution is `u`, from a snapshot.
     pub fn restore(&mut self, snapshot: &Snapshot, u: &Vector) -> Result<()> {
-        let [approach, sliding, sliding_rate, approach_rate, scale] = snapshot.numbers("face")?;
-        self.accepted.placement = Placement { approach, sliding, sliding_rate, approach_rate, dt: 0.0 };
+        let [approach, sliding, sliding_rate, approach_rate, resolution, scale] = snapshot.numbers("face")?;
+        self.accepted.placement = Placement { approach, sliding, sliding_rate, approach_rate, resolution, dt: 0.0 };
         self.accepted.scale = scale;
         snapshot.fill("face-rate", &mut self.accepted.surface.rate)?;
         self.interface.restore(snapshot)?;
@@ -285,9 +302,20 @@ impl ContactFace {
 
     /// Brings the face's displacements, rates and the indenter's place to a trial state.
     fn try_state(&mut self, step: Step, u: &Vector, rate: &Vector) -> Result<()> {
-        self.trial.placement = self.phase()?.placement(step.t, step.dt);
+        self.trial.placement = self.placement(step)?;
         self.gather.gather(u, &mut self.trial.surface.displacement)?;
         self.gather.gather(rate, &mut self.trial.surface.rate)
+    }
+
+    /// Where the indenter is at the end of a step, and what the step can resolve.
+    fn placement(&self, step: Step) -> Result<Placement> {
+        // Slip is a difference of displacements, of which round-off leaves 16 digits; the law is let have six of them.
+        const LAST_DIGITS: f64 = 1e-10;
+        let placement = self.phase()?.placement(step.t, step.dt);
+        let farthest =
+            self.accepted.surface.displacement.iter().fold(placement.approach.abs(), |most, u| most.max(u.abs()));
+        let resolution = LAST_DIGITS * (farthest / step.dt + placement.sliding_rate.abs());
+        Ok(Placement { resolution, ..placement })
     }
 
     fn phase(&self) -> Result<&Phase> {

@@ -19,6 +19,7 @@ mod layered;
 mod newton;
 mod remembering;
 mod sparse;
+mod start;
 mod waves;
 
 use super::face::ContactFace;
@@ -37,6 +38,7 @@ pub use interior::Interior;
 pub use layered::{Layered, PeriodicColumn, Relaxations};
 pub use remembering::{Inside, Remembering};
 pub use sparse::Sparse;
+pub use start::Station;
 
 pub(super) use newton::{Factor, SparseColumns};
 
@@ -159,6 +161,26 @@ impl<B: Backing> Condensed<B> {
     }
 }
 
+impl<B: Backing> Condensed<B> {
+    /// Makes `u`, the accepted state, a start at which the tractions meet the laws.
+    fn start(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        self.backing.prepare(step)?;
+        let (rate, mut y) = (u.like()?, u.like()?);
+        self.backing.free(step, u, &rate, &mut y)?;
+        let stations = self.face.stations(step)?;
+        let secant = self.backing.secant();
+        let Some(compliance) = self.backing.compliance() else {
+            u.view_mut()?;
+            return Ok(());
+        };
+        let free = u.view()?.iter().zip(y.view()?.iter()).map(|(u, y)| u - y / secant).collect();
+        let friction = self.face.interface().friction();
+        let start = start::displacements(&stations, friction, (compliance, secant), free);
+        u.view_mut()?.copy_from_slice(&start);
+        Ok(())
+    }
+}
+
 impl<B: Backing> TransientProblem for Condensed<B> {
     fn begin(&mut self, phase: Phase) {
         self.face.begin(phase);
@@ -220,6 +242,9 @@ impl<B: Backing> TransientProblem for Condensed<B> {
     }
 
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        if self.face.is_stiff(step, self.backing.softness() / self.backing.secant())? {
+            return self.start(step, u);
+        }
         let prediction = self.face.prediction(step)?;
         // Only rank 0 has values.
         for (value, increment) in u.view_mut()?.iter_mut().zip(prediction.iter().flatten()) {

@@ -1,0 +1,185 @@
+//! Numerical stability at the extremes: scenes from far beyond what anyone would solve converge to a state that keeps the
+//! laws, or are refused with exit code 3. Never a number that is none, never a wrong answer.
+//!
+//! Ranges (sample.rs): velocity 1e-9 to 1e6 m/s, dt/tau 1e-14 to 1e14, penalty 1e-2 to 1e12 times E/h, regularisation
+//! 1e-14 to 1e6 times v, nu -0.9 to 0.49999, f 0 to 10, depth over wavelength 1e-3 to 1e3, amplitude over wavelength
+//! 1e-12 to 0.3; four profiles, four sides, elastic to five arms, both memories and Poisson rules, sliding on, turning round
+//! and lifting off, everything in steps that pass anything from nothing to very many wavelengths.
+//!
+//! `MPJR_EXTREMES=500 cargo test --release --test extremes -- random` takes 500 scenes instead of the first 120, and
+//! `MPJR_EXTREMES_OUT=FILE.csv` writes a line for each.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../common/mpi.rs"]
+mod mpi_cases;
+mod sample;
+
+use std::fmt::Write;
+use std::path::Path;
+
+use mpi::topology::SimpleCommunicator;
+use mpi_cases::Case;
+use mpjr::error::{Error, Result};
+use mpjr::scene::{self, Source};
+use mpjr::solution::{self, Solution};
+use sample::{Draw, Sample};
+
+const CASES: &[Case] = &[
+    Case::new("random_scenes", &[1], random_scenes),
+    Case::new("units_do_not_matter", &[1], units_do_not_matter),
+    Case::new("everything_in_one_step", &[1], everything_in_one_step),
+];
+
+fn main() {
+    mpi_cases::main(CASES);
+}
+
+fn solve(world: &SimpleCommunicator, text: &str) -> Result<Solution> {
+    let source = Source { file: "extreme.toml".into(), overrides: Vec::new() };
+    let scene = scene::read(text, &source).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    solution::solve(world, &scene)
+}
+
+/// Issue 6: of a random sample at least 95 % converge (found: 98.2 % of 500), all of those keep the laws, and the others
+/// say so with a remedy.
+fn random_scenes(world: &SimpleCommunicator, _: &Path) {
+    let count = std::env::var("MPJR_EXTREMES").ok().and_then(|count| count.parse().ok()).unwrap_or(120);
+    let mut draw = Draw(1);
+    let mut converged = 0;
+    let mut table = String::from(Sample::COLUMNS);
+    for i in 0..count {
+        let sample = Sample::random(&mut draw);
+        let outcome = solve(world, &sample.scene(1.0, 1.0, 1.0));
+        writeln!(table, "{},{}", sample.row(), u8::from(outcome.is_ok())).unwrap();
+        match outcome {
+            Ok(solution) => {
+                converged += 1;
+                keeps_the_laws(&sample, &solution).unwrap_or_else(|what| panic!("{i}: {what}\n{sample:?}"));
+            }
+            Err(error @ Error::Solver(_)) => {
+                let text = error.to_string();
+                assert!(text.contains("no convergence in the step") && text.contains("may help"), "{text}");
+                println!("{i}: {text} {sample:?}");
+            }
+            Err(other) => panic!("{i}: {other}\n{sample:?}"),
+        }
+    }
+    println!("{converged} of {count} converge");
+    if let Ok(file) = std::env::var("MPJR_EXTREMES_OUT") {
+        std::fs::write(file, table).unwrap();
+    }
+    assert!(converged as f64 >= 0.95 * count as f64, "only {converged} of {count} converge");
+}
+
+/// All numbers finite, 0 <= p, |q| <= f p, no traction in the gap; |Q| <= f N; energy goes in and is not made.
+fn keeps_the_laws(sample: &Sample, solution: &Solution) -> std::result::Result<(), String> {
+    let f = sample.friction * (1.0 + 1e-9);
+    for row in &solution.history {
+        let numbers = [row.normal_force, row.tangential_force, row.hysteretic_force, row.max_penetration];
+        let finite = numbers.iter().all(|number| number.is_finite());
+        if !finite || row.normal_force < 0.0 || row.tangential_force.abs() > f * row.normal_force {
+            return Err(format!("{row:?}"));
+        }
+    }
+    for end in &solution.ends {
+        for (node, ((p, q), gap)) in end.pressure.iter().zip(&end.shear).zip(&end.gap).enumerate() {
+            let known = p.is_finite() && q.is_finite() && gap.is_finite();
+            if !known || *p < 0.0 || q.abs() > f * p || (*gap > 0.0 && *p != 0.0) {
+                return Err(format!("node {node}: p = {p:e}, q = {q:e}, gap = {gap:e}"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A scene of ordinary proportions in nanometres and gigapascals, in kilometres and millipascals, in microseconds and
+/// years: all forces are those in metres, pascals and seconds times the units, to 1e-9 of the largest.
+fn units_do_not_matter(world: &SimpleCommunicator, _: &Path) {
+    let sample = Sample {
+        velocity: 0.1,
+        step: 0.1,
+        penalty: 100.0,
+        regularisation: 0.01,
+        poisson: 0.3,
+        friction: 0.3,
+        depth: 0.7,
+        amplitude: 1e-3,
+        approach: 1.5,
+        cells: [16, 8],
+        arms: 2,
+        rule: "constant_bulk_modulus",
+        memory: "exponential",
+        sides: "periodic",
+        profile: "harmonic",
+        motion: "turn",
+    };
+    let forces = |length: f64, modulus: f64, time: f64| {
+        let text = sample.scene(length, modulus, time).replace("[indenter]", "[solver]\ntolerance = 1e-12\n[indenter]");
+        let unit = length * modulus;
+        let solution = solve(world, &text).unwrap();
+        let of = |row: &mpjr::output::HistoryRow| [row.normal_force, row.tangential_force].map(|force| force / unit);
+        solution.history.iter().flat_map(of).collect::<Vec<f64>>()
+    };
+    let plain = forces(1.0, 1.0, 1.0);
+    let largest = plain.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+    for (length, modulus, time) in [(1e-9, 1e9, 1.0), (1e3, 1e-3, 1.0), (1e-6, 1e6, 1e-6), (1.0, 1.0, 3e7)] {
+        let scaled = forces(length, modulus, time);
+        assert_eq!(scaled.len(), plain.len());
+        let apart = scaled.iter().zip(&plain).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs())) / largest;
+        println!("{length:e} m, {modulus:e} Pa, {time:e} s: {apart:e}");
+        assert!(apart < 1e-9, "{length:e} m, {modulus:e} Pa, {time:e} s: {apart:e}");
+    }
+}
+
+/// From no contact to full contact in one step, slid by many wavelengths and back in one step each, and lost in one. The
+/// elastic layer remembers nothing but its friction: in full contact N is that of the approach, and nothing is left
+/// at the end.
+fn everything_in_one_step(world: &SimpleCommunicator, _: &Path) {
+    let scene = "
+[layer]
+width = 1.0
+depth = 1.0
+cells = [32, 16]
+sides = \"periodic\"
+[material]
+young_modulus = 1.0
+poisson_ratio = 0.3
+[indenter]
+profile = \"harmonic\"
+amplitude = 1e-3
+wavelength = 1.0
+[contact]
+penalty = 1e6
+[friction]
+law = \"coulomb_tanh\"
+coefficient = 0.3
+regularisation = 1e-12
+[[phase]]
+duration = 1.0
+steps = 1
+approach = 2e-2
+[[phase]]
+velocity = 1234.25
+duration = 1.0
+steps = 1
+[[phase]]
+velocity = -1234.25
+duration = 1.0
+steps = 1
+[[phase]]
+duration = 1.0
+steps = 1
+approach = -1e-2
+";
+    let solution = solve(world, scene).unwrap();
+    let [pressed, slid, back, off] = [0, 1, 2, 3].map(|phase| solution.end_of(phase));
+    assert_eq!([pressed, slid, back, off].map(|row| row.contact_fraction), [1.0, 1.0, 1.0, 0.0]);
+    // The mean of 2e-2 - h is 1.9e-2; a column under it has the modulus E (1 - nu)/((1 + nu)(1 - 2 nu)).
+    let exact = 1.9e-2 * 0.7 / (1.3 * 0.4);
+    for row in [pressed, slid, back] {
+        assert!((row.normal_force / exact - 1.0).abs() < 1e-4, "{} instead of {exact}", row.normal_force);
+    }
+    assert!((slid.tangential_force / (0.3 * slid.normal_force) - 1.0).abs() < 1e-9, "{slid:?}");
+    assert!((back.tangential_force / (-0.3 * back.normal_force) - 1.0).abs() < 1e-9, "{back:?}");
+    assert_eq!((off.normal_force, off.tangential_force), (0.0, 0.0));
+}
