@@ -218,7 +218,7 @@ fn check_prints_the_resolved_scene() {
     }
 }
 
-/// A solver that is allowed one Newton iteration cannot follow a growing contact: after the stated number of cuts the
+/// A solver that is allowed one Newton iteration cannot follow contact that grows or begins to slip: after the stated number of cuts the
 /// run ends with code 3, and the file holds what was accepted: rows of finite numbers, ever later, each of them a
 /// converged state (the force of a shorter run that ends at the same time).
 #[test]
@@ -226,7 +226,8 @@ fn no_convergence_keeps_what_was_accepted() {
     for ranks in [1, 2] {
         let outcome = Run::new(SLIDING).set("layer.cells=[8,8]").petsc("-snes_max_it 1").ranks(ranks).run();
         assert_eq!(outcome.code, 3, "{outcome:?}");
-        outcome.assert_single_message("mpjr: scene.toml: phase \"indent\": no convergence in the step to t = ");
+        outcome.assert_single_message(": no convergence in the step to t = ");
+        assert!(outcome.stderr.contains("mpjr: scene.toml: phase \""), "{}", outcome.stderr);
         assert!(outcome.stderr.contains("; scene.h5 holds the results up to there"), "{}", outcome.stderr);
         assert!(outcome.stdout.contains("status:        not converged at t = "), "{}", outcome.stdout);
         let results = outcome.results();

@@ -290,15 +290,16 @@ impl Random {
             Friction::CoulombElasticSlip { coefficient, elastic_slip: small },
         ]);
         let quadrature = self.of(&[Quadrature::Nodal, Quadrature::Gauss]);
+        let adaptive = phases.iter().any(|phase| matches!(phase.stepping, Stepping::Tolerance(_)));
         let method = match quadrature {
-            Quadrature::Nodal => Method::Augmented { augmentation_tolerance: 1e-6 * tolerance },
-            Quadrature::Gauss => Method::Penalty,
+            Quadrature::Nodal if !adaptive => Method::Augmented { augmentation_tolerance: 1e-6 * tolerance },
+            _ => Method::Penalty,
         };
         let ends = phases.iter().take(2).map(|phase| When::PhaseEnd(phase.name.clone()));
         let times = [When::Time(phases[0].duration * self.unit())];
         let body = if self.below(4) == 0 { self.mesh_file() } else { self.layer(wavelength) };
         let mut materials = self.materials(&body);
-        if phases.iter().any(|phase| matches!(phase.stepping, Stepping::Tolerance(_))) {
+        if adaptive {
             materials.iter_mut().for_each(|material| material.memory = Memory::Exponential);
         }
         Scene {

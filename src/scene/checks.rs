@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::{Arm, Extend, Indenter, Layer, Material, Memory, Phase, Scene, Sides, Stepping, When, keys};
+use super::{Arm, Extend, Indenter, Layer, Material, Memory, Method, Phase, Scene, Sides, Stepping, When, keys};
 use crate::error::{Error, Result};
 
 /// The key and what is wrong with it.
@@ -17,7 +17,7 @@ pub(super) fn all(scene: &Scene, file: &Path) -> Result<()> {
         .and_then(|()| layer(&|layer| strata(layer, &scene.materials)))
         .and_then(|()| layer(&|layer| period(layer, &scene.indenter)))
         .and_then(|()| times(&scene.phases))
-        .and_then(|()| adaptive(&scene.phases, &scene.materials))
+        .and_then(|()| adaptive(scene))
         .and_then(|()| scene.phases.iter().try_for_each(|phase| approach(phase, scene)))
         .and_then(|()| moments(&scene.output.bulk_at, &scene.phases))
         .map_err(|(key, reason)| Error::scene(file, key, reason))
@@ -159,16 +159,20 @@ fn times(phases: &[Phase]) -> Check {
 }
 
 /// Adaptive steps see what is not straight in the path of the face, for which the exponential memory is exact; the error
-/// of backward Euler's memory they would not see where the face is held and the stress relaxes.
-fn adaptive(phases: &[Phase], materials: &[Material]) -> Check {
+/// of backward Euler's memory they would not see where the face is held and the stress relaxes. A step that is solved again
+/// with other multipliers must not change its length meanwhile.
+fn adaptive(scene: &Scene) -> Check {
+    let adaptive = |phase: &&Phase| matches!(phase.stepping, Stepping::Tolerance(_));
+    let Some(phase) = scene.phases.iter().find(adaptive) else { return Ok(()) };
+    let key = format!("phase.{}.tolerance", phase.name);
     let first_order = |material: &Material| !material.is_elastic() && material.memory == Memory::BackwardEuler;
-    match phases.iter().find(|phase| matches!(phase.stepping, Stepping::Tolerance(_))) {
-        Some(phase) if materials.iter().any(first_order) => {
-            let reason = "needs memory = \"exponential\" in the material; or give steps";
-            fail(&format!("phase.{}.tolerance", phase.name), reason)
-        }
-        _ => Ok(()),
+    if scene.materials.iter().any(first_order) {
+        return fail(&key, "needs memory = \"exponential\" in the material; or give steps");
     }
+    if scene.contact.method != Method::Penalty {
+        return fail(&key, "needs method = \"penalty\" in contact; or give steps");
+    }
+    Ok(())
 }
 
 /// The indenter neither passes the clamped face nor, as a circle, sinks in to its centre.
