@@ -7,6 +7,7 @@ mod augmentation;
 mod exchange;
 mod oscillation;
 mod sites;
+mod stations;
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -17,12 +18,12 @@ use crate::loading::Placement;
 use crate::mesh::Face;
 use crate::profile::{Elevation, Profile};
 use crate::snapshot::Snapshot;
-use crate::solve::Station;
 
 use augmentation::{Augmentation, Multipliers};
 use sites::{Point, Sites};
 
 pub use exchange::Exchange;
+pub use stations::Station;
 
 /// Displacements and rates of the face's nodes, in the order of the face: x, z of each.
 #[derive(Debug, Clone, PartialEq)]
@@ -372,25 +373,6 @@ impl Interface {
         };
         let sum: f64 = self.answers(&self.acting, placement, surface).map(shear).sum();
         normal.hypot(f64::EPSILON * sum.sqrt())
-    }
-
-    /// The points of the contact in a step to `placement` from the accepted state `surface`.
-    pub fn stations(&mut self, placement: Placement, surface: &Surface) -> Result<Vec<Station>> {
-        self.attempt(placement)?;
-        let at_rest = Surface { displacement: surface.displacement.clone(), rate: vec![0.0; surface.rate.len()] };
-        let penalty = self.penalty();
-        let multipliers = self.augmentation.as_ref().map(|augmentation| &augmentation.multipliers().pressure);
-        let station = |(i, (point, motion)): (usize, (&Point, Motion))| Station {
-            nodes: point.nodes,
-            shape: point.shape,
-            weight: point.weight,
-            frame: point.frame,
-            clearance: motion.clearance,
-            before: (point.frame * surface.at(point.nodes, point.shape).displacement).x,
-            slip: motion.slip,
-            resistance: Resistance { penalty, multiplier: multipliers.map_or(0.0, |all| all[i]) },
-        };
-        Ok(self.acting.motions(placement, &at_rest).enumerate().map(station).collect())
     }
 
     /// The largest stiffness of a point, N/m per m.

@@ -4,11 +4,11 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::{Contact, Station};
+use super::Contact;
 use crate::energy::FaceEnergy;
 use crate::error::{Error, Result};
 use crate::friction::{Friction, Slip};
-use crate::interface::{Exchange, Fields, Interface, Residual, Surface, Tangent};
+use crate::interface::{Exchange, Fields, Interface, Residual, Station, Surface, Tangent};
 use crate::loading::{Phase, Placement};
 use crate::petsc::{Gather, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;

@@ -18,7 +18,7 @@ use crate::snapshot::Snapshot;
 pub use body::{Body, Moduli, Region, Solid};
 pub use condensed::{
     Backing, Compliance, Condensed, Following, Inside, Interior, LARGE_FACE, Layered, PeriodicColumn, Relaxation,
-    Relaxations, Remembering, Sparse, Station,
+    Relaxations, Remembering, Sparse,
 };
 pub use driver::{Counts, Driver, MAX_NEWTON, Position};
 pub use monolithic::Monolithic;

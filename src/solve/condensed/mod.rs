@@ -38,7 +38,6 @@ pub use interior::Interior;
 pub use layered::{Layered, PeriodicColumn, Relaxations};
 pub use remembering::{Inside, Remembering};
 pub use sparse::Sparse;
-pub use start::Station;
 
 pub(super) use newton::{Factor, SparseColumns};
 

@@ -9,33 +9,13 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::compliance::Compliance;
-use crate::element::mpjr::{Frame, Resistance};
+use crate::element::mpjr::Resistance;
 use crate::friction::{Friction, Slip};
+use crate::interface::Station;
 
 /// Sweeps over all points at most, and products of a compliance and a force in all: it is a start only.
 const MOST_SWEEPS: usize = 2000;
 const MOST_PRODUCTS: usize = 500_000_000;
-
-/// A point of the contact during a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Station {
-    /// The nodes that share it.
-    pub nodes: [usize; 2],
-    /// Their shares.
-    pub shape: [f64; 2],
-    /// m
-    pub weight: f64,
-    /// Rows t, n.
-    pub frame: Frame,
-    /// Over the undeformed face, along n, m.
-    pub clearance: f64,
-    /// The displacement along t at the accepted state, m.
-    pub before: f64,
-    /// With the layer at rest in this step.
-    pub slip: Slip,
-    /// Of the normal law.
-    pub resistance: Resistance,
-}
 
 /// What the layer does at a point under a traction there: m0 + D (q, -p), in (t, n).
 struct Local {
