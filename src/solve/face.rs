@@ -201,7 +201,8 @@ impl ContactFace {
         }
         let scale = self.trial.scale.max(self.accepted.scale);
         let reference = if scale > 0.0 { scale } else { self.first_norm };
-        let tolerance = if iteration == 0 { 8.0 * f64::EPSILON } else { tolerance };
+        // A start that is only within the noise has no tangent yet, by which the forces are refined.
+        let (tolerance, noise) = if iteration == 0 { (8.0 * f64::EPSILON, 0.0) } else { (tolerance, noise) };
         if norm <= (tolerance * reference).max(noise) { Verdict::Converged } else { Verdict::Iterate }
     }
 
