@@ -20,9 +20,10 @@ use crate::profile::{Elevation, Profile};
 use crate::snapshot::Snapshot;
 
 use augmentation::{Augmentation, Multipliers};
-use sites::{Point, Sites};
+use sites::Sites;
 
 pub use exchange::Exchange;
+pub use sites::Point;
 pub use stations::Station;
 
 /// Displacements and rates of the face's nodes, in the order of the face: x, z of each.
@@ -385,6 +386,13 @@ impl Interface {
         self.augmentation.as_ref().map_or(self.laws.penalty, |augmentation| augmentation.multipliers().penalty)
     }
 
+    /// What each point resists penetration with, in order.
+    fn resistances(&self) -> impl Iterator<Item = Resistance> {
+        let penalty = self.penalty();
+        let multipliers = self.augmentation.as_ref().map(|augmentation| &augmentation.multipliers().pressure);
+        (0..).map(move |i: usize| Resistance { penalty, multiplier: multipliers.map_or(0.0, |all| all[i]) })
+    }
+
     /// Brings the profile and the multipliers to a state that is to be evaluated.
     fn attempt(&mut self, placement: Placement) -> Result<()> {
         if let Some(augmentation) = &mut self.augmentation {
@@ -406,11 +414,8 @@ impl Interface {
         placement: Placement,
         surface: &'a Surface,
     ) -> impl Iterator<Item = Answer<'a>> {
-        let penalty = self.penalty();
-        let multipliers = self.augmentation.as_ref().map(|augmentation| &augmentation.multipliers().pressure);
-        let motions = sites.motions(placement, surface).zip(&sites.elevations).enumerate();
-        motions.map(move |(i, ((point, motion), elevation))| {
-            let resistance = Resistance { penalty, multiplier: multipliers.map_or(0.0, |all| all[i]) };
+        let motions = sites.motions(placement, surface).zip(&sites.elevations).zip(self.resistances());
+        motions.map(move |(((point, motion), elevation), resistance)| {
             let traction = mpjr::traction(motion, resistance, self.laws.friction.as_ref());
             Answer { point, elevation, motion, traction }
         })

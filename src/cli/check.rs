@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{is_first_process, profile, summary};
+use super::{profile, summary};
 use crate::composition;
 use crate::error::Result;
 use crate::scene::{self, Source};
@@ -21,10 +21,6 @@ pub struct CheckArguments {
 
 /// Reads and checks the scene and prints what it resolves to.
 pub fn run(arguments: &CheckArguments) -> Result<()> {
-    // It needs no solver, so that one process does it for all.
-    if !is_first_process() {
-        return Ok(());
-    }
     let file = &arguments.scene;
     let source = Source { file: file.clone(), overrides: arguments.set.clone() };
     let scene = scene::read(&scene::open(file)?, &source)?;

@@ -21,6 +21,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use crate::error::{Error, Result};
+use crate::petsc::Session;
 
 /// Transient viscoelastic contact with friction, by interface finite elements with embedded profiles (MPJR).
 ///
@@ -68,22 +69,9 @@ pub fn main() -> i32 {
     let outcome: Result<()> = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Sweep(arguments) => sweep::run(&arguments),
-        Command::Check(arguments) => check::run(&arguments),
-        // These need no solver, so that one process does it for all.
-        Command::Plot(arguments) => {
-            if is_first_process() {
-                plot::run(&arguments)
-            } else {
-                Ok(())
-            }
-        }
-        Command::Fit(arguments) => {
-            if is_first_process() {
-                fit::run(&arguments)
-            } else {
-                Ok(())
-            }
-        }
+        Command::Check(arguments) => on_first_process(|| check::run(&arguments)),
+        Command::Plot(arguments) => on_first_process(|| plot::run(&arguments)),
+        Command::Fit(arguments) => on_first_process(|| fit::run(&arguments)),
         Command::Study(arguments) => study::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
     };
@@ -104,6 +92,20 @@ pub fn main() -> i32 {
 /// as soon as one fails, and would cut off the message of the first.
 fn exit_code(code: i32) -> i32 {
     if is_first_process() { code } else { 0 }
+}
+
+/// What needs no solver: one process does it for all.
+fn on_first_process(work: impl FnOnce() -> Result<()>) -> Result<()> {
+    if is_first_process() { work() } else { Ok(()) }
+}
+
+/// What needs one: MPI and PETSc, with these PETSc options, on all ranks of the launcher.
+fn in_session(petsc: &[String], work: impl FnOnce(&Session, &SimpleCommunicator) -> Result<()>) -> Result<()> {
+    let session = Session::start(petsc)?;
+    let world = session.world();
+    let outcome = work(&session, &world);
+    abort_if_alone(&world, &outcome);
+    outcome
 }
 
 /// Ends all ranks where one has met an error inside a library, for which the others may wait.

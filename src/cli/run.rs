@@ -38,12 +38,7 @@ pub struct RunArguments {
 
 /// Solves the scene on all ranks of the launcher.
 pub fn run(arguments: &RunArguments) -> Result<()> {
-    let session = Session::start(&arguments.petsc)?;
-    let interrupt = Interrupt::watch()?;
-    let world = session.world();
-    let outcome = solve((&session, &world), &interrupt, arguments);
-    super::abort_if_alone(&world, &outcome);
-    outcome
+    super::in_session(&arguments.petsc, |session, world| solve((session, world), &Interrupt::watch()?, arguments))
 }
 
 /// Reads, builds, runs and records; the error is the same on all ranks but for one inside a library.

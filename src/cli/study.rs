@@ -11,7 +11,6 @@ use super::summary::seconds;
 use super::sweep::{line, replace};
 use crate::error::{Error, Result};
 use crate::parallel::agree;
-use crate::petsc::Session;
 use crate::plot::replaceable;
 use crate::scene::Source;
 use crate::study::advice::{self, Advice};
@@ -45,11 +44,7 @@ pub fn run(arguments: &StudyArguments) -> Result<()> {
     if let Some(error) = arguments.error.filter(|error| !(*error > 0.0 && *error < 1.0)) {
         return Err(Error::Usage(format!("--error {error}: must be above 0 and below 1, such as 0.01 for 1 %")));
     }
-    let session = Session::start(&[])?;
-    let world = session.world();
-    let outcome = climb(&world, arguments);
-    super::abort_if_alone(&world, &outcome);
-    outcome
+    super::in_session(&[], |_, world| climb(world, arguments))
 }
 
 /// What a study came to.

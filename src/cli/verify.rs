@@ -8,7 +8,6 @@ use mpi::traits::Communicator;
 
 use super::summary::seconds;
 use crate::error::{Error, Result};
-use crate::petsc::Session;
 use crate::verify::{self, Row, Tally};
 
 /// The arguments of `mpjr verify`.
@@ -27,11 +26,7 @@ pub struct VerifyArguments {
 
 /// Solves all cases on all ranks; rank 0 prints the table. Exit code 1 if anything differs by more than its tolerance.
 pub fn run(arguments: &VerifyArguments) -> Result<()> {
-    let session = Session::start(&arguments.petsc)?;
-    let world = session.world();
-    let outcome = compare(&world, arguments);
-    super::abort_if_alone(&world, &outcome);
-    outcome
+    super::in_session(&arguments.petsc, |_, world| compare(world, arguments))
 }
 
 fn compare(world: &SimpleCommunicator, arguments: &VerifyArguments) -> Result<()> {

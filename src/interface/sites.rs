@@ -12,7 +12,9 @@ use crate::profile::{Elevation, Profile};
 /// A point of the face where the laws are evaluated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
+    /// The nodes that share it.
     pub nodes: [usize; 2],
+    /// Their shares.
     pub shape: [f64; 2],
     /// m
     pub weight: f64,
@@ -20,6 +22,7 @@ pub struct Point {
     pub x: f64,
     /// How far below the highest node of the face, m.
     pub recess: f64,
+    /// Rows t, n.
     pub frame: Frame,
 }
 

@@ -4,6 +4,7 @@ use mpi::topology::SimpleCommunicator;
 use nalgebra::{SVector, Vector4};
 
 use super::BulkFields;
+use crate::bulk::Bulk;
 use crate::element::plane::{Answer, Split};
 use crate::element::{Quadrilateral, bbar, quad4, tri3};
 use crate::error::Result;
@@ -186,6 +187,16 @@ impl Body {
             Some(recovery) => Ok(recovery),
             place => Ok(place.insert(Recovery::new(&self.solid.mesh, &self.numbering, layout)?)),
         }
+    }
+
+    /// [`Self::fields`] at the accepted state `u` of a bulk with memory.
+    pub fn fields_with_memory(&mut self, bulk: &mut Bulk, u: &Vector) -> Result<BulkFields> {
+        let mut effective = Vec::new();
+        bulk.effective(u, |y| {
+            effective.push(self.around(y)?);
+            Ok(())
+        })?;
+        self.fields(u, &effective)
     }
 
     /// Displacement and stress at this rank's nodes; stress is the mean of what the cells around a node say.

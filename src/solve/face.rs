@@ -190,9 +190,9 @@ impl ContactFace {
 
     /// Judges a Newton iterate by the norm of its residual: converged below `tolerance` times the scale of the contact
     /// forces (at this or the accepted state, the larger; without contact, times the first norm of the step), or at
-    /// the `noise` that round-off leaves. At least one iteration is made unless the first guess is as good as
-    /// round-off.
-    pub fn test(&mut self, iteration: usize, norm: f64, tolerance: f64, noise: f64) -> Verdict {
+    /// the `noise` that round-off leaves, which is asked for only where it decides. At least one iteration is made unless
+    /// the first guess is as good as round-off.
+    pub fn test(&mut self, iteration: usize, norm: f64, tolerance: f64, noise: impl FnOnce(&Self) -> f64) -> Verdict {
         if iteration == 0 {
             self.first_norm = norm;
         }
@@ -202,8 +202,11 @@ impl ContactFace {
         let scale = self.trial.scale.max(self.accepted.scale);
         let reference = if scale > 0.0 { scale } else { self.first_norm };
         // A start that is only within the noise has no tangent yet, by which the forces are refined.
-        let (tolerance, noise) = if iteration == 0 { (8.0 * f64::EPSILON, 0.0) } else { (tolerance, noise) };
-        if norm <= (tolerance * reference).max(noise) { Verdict::Converged } else { Verdict::Iterate }
+        let converged = match iteration {
+            0 => norm <= 8.0 * f64::EPSILON * reference,
+            _ => norm <= tolerance * reference || norm <= noise(self),
+        };
+        if converged { Verdict::Converged } else { Verdict::Iterate }
     }
 
     /// The force norm that round-off in the gap leaves, N/m.
@@ -308,11 +311,14 @@ impl ContactFace {
         self.gather.gather(rate, &mut self.trial.surface.rate)
     }
 
-    /// Where the indenter is at the end of a step, and what the step can resolve.
+    /// Where the indenter is at the end of a step, and what slip rates friction can tell apart in it.
     fn placement(&self, step: Step) -> Result<Placement> {
         // Slip is a difference of displacements, of which round-off leaves 16 digits; the law is let have six of them.
         const LAST_DIGITS: f64 = 1e-10;
         let placement = self.phase()?.placement(step.t, step.dt);
+        if self.interface.friction().is_none() {
+            return Ok(placement);
+        }
         let farthest =
             self.accepted.surface.displacement.iter().fold(placement.approach.abs(), |most, u| most.max(u.abs()));
         let resolution = LAST_DIGITS * (farthest / step.dt + placement.sliding_rate.abs());

@@ -138,8 +138,7 @@ impl TransientProblem for Monolithic {
     }
 
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
-        let noise = self.face.noise();
-        self.face.test(iteration, norm, self.tolerance, noise)
+        self.face.test(iteration, norm, self.tolerance, ContactFace::noise)
     }
 
     fn departure(&mut self, step: Step, u: &Vector) -> Result<f64> {
@@ -190,13 +189,7 @@ impl TransientProblem for Monolithic {
 
     fn bulk_fields(&mut self, u: &Vector) -> Result<BulkFields> {
         self.recoveries += 1;
-        let Self { bulk, body, .. } = self;
-        let mut effective = Vec::new();
-        bulk.effective(u, |y| {
-            effective.push(body.around(y)?);
-            Ok(())
-        })?;
-        body.fields(u, &effective)
+        self.body.fields_with_memory(&mut self.bulk, u)
     }
 
     fn work(&self) -> Work {

@@ -62,12 +62,7 @@ pub fn run(arguments: &SweepArguments) -> Result<()> {
     if arguments.list || arguments.slurm {
         return print(arguments);
     }
-    let session = Session::start(&arguments.petsc)?;
-    let interrupt = Interrupt::watch()?;
-    let world = session.world();
-    let outcome = solve((&session, &world), &interrupt, arguments);
-    super::abort_if_alone(&world, &outcome);
-    outcome
+    super::in_session(&arguments.petsc, |session, world| solve((session, world), &Interrupt::watch()?, arguments))
 }
 
 /// What needs no solver.

@@ -1,15 +1,14 @@
 //! Tangential force against time for each model, and its steady value against velocity: Figure 7 of the paper.
 
 use super::{Case, Model, Sweep, against_velocity, bounds};
-use crate::plot::results::short;
-use crate::plot::{Axis, Curve, Figure, REFERENCE, Ramp, Sheet, Stroke};
+use crate::plot::{Axis, Figure, Sheet};
 
 /// One panel for each model and one for the steady value.
 pub fn sheet(sweep: &Sweep) -> Sheet {
     let highest = sweep
         .models
         .iter()
-        .flat_map(|model| model.cases.iter().chain(&model.instantaneous).chain(&model.long_term))
+        .flat_map(Model::all)
         .flat_map(|case| &case.history.tangential)
         .fold(0.0f64, |high, q| high.max(*q));
     let mut figures: Vec<Figure> = Vec::new();
@@ -22,24 +21,10 @@ pub fn sheet(sweep: &Sweep) -> Sheet {
 }
 
 fn transient(model: &Model, letter: char, highest: f64) -> Figure {
-    let colours = Ramp::lines(model.cases.len());
-    let curve = |case: &Case, label: String, colour, stroke| Curve {
-        label,
-        points: case.history.time.iter().map(|t| t / case.t0).zip(case.history.tangential.iter().copied()).collect(),
-        colour,
-        stroke,
+    let points = |case: &Case| {
+        case.history.time.iter().map(|t| t / case.t0).zip(case.history.tangential.iter().copied()).collect()
     };
-    let mut curves: Vec<Curve> = model
-        .cases
-        .iter()
-        .zip(colours)
-        .map(|(case, colour)| curve(case, short(case.velocity, 4), colour, Stroke::Solid))
-        .collect();
-    for (bound, label, stroke) in
-        [(&model.instantaneous, "elastic, G(0)", Stroke::Dashed), (&model.long_term, "elastic, G(∞)", Stroke::Dotted)]
-    {
-        curves.extend(bound.iter().map(|case| curve(case, label.into(), REFERENCE, stroke)));
-    }
+    let curves = model.curves(points);
     let end = curves.iter().filter_map(|curve| curve.points.last()).fold(1.0f64, |end, point| end.max(point.0));
     Figure {
         title: format!("({letter}) {}; v in m/s", model.label),

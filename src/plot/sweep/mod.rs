@@ -7,13 +7,16 @@ mod onset;
 use std::path::{Path, PathBuf};
 
 use super::material::Solid;
-use super::results::{History, Run};
-use super::{Colour, Curve, PALETTE, Sheet, Stroke};
+use super::results::{History, Run, short};
+use super::{Colour, Curve, PALETTE, REFERENCE, Ramp, Sheet, Stroke};
 use crate::error::{Error, Result};
 use crate::scene::{Material, Motion};
 
 /// Of the last phase, what counts as steady.
 const STEADY: f64 = 0.1;
+
+/// How the elastic bounds are drawn and called: with the instantaneous modulus, with the long-term one.
+const BOUNDS: [(Stroke, &str); 2] = [(Stroke::Dashed, "elastic, G(0)"), (Stroke::Dotted, "elastic, G(∞)")];
 
 /// One case of the sweep.
 #[derive(Debug)]
@@ -118,6 +121,31 @@ fn files(directory: &Path) -> Result<Vec<PathBuf>> {
     }
     files.sort();
     Ok(files)
+}
+
+impl Model {
+    /// The elastic bounds, where the sweep has them.
+    fn bounds(&self) -> [(&Option<Case>, Stroke, &'static str); 2] {
+        let [instantaneous, long_term] = BOUNDS;
+        [(&self.instantaneous, instantaneous.0, instantaneous.1), (&self.long_term, long_term.0, long_term.1)]
+    }
+
+    /// All cases, the bounds included.
+    fn all(&self) -> impl Iterator<Item = &Case> {
+        self.cases.iter().chain(&self.instantaneous).chain(&self.long_term)
+    }
+
+    /// A curve for each velocity and each bound.
+    fn curves(&self, points: impl Fn(&Case) -> Vec<(f64, f64)>) -> Vec<Curve> {
+        let curve = |case: &Case, label: String, colour, stroke| Curve { label, points: points(case), colour, stroke };
+        let velocities = self.cases.iter().zip(Ramp::lines(self.cases.len()));
+        let mut curves: Vec<Curve> =
+            velocities.map(|(case, colour)| curve(case, short(case.velocity, 4), colour, Stroke::Solid)).collect();
+        for (bound, stroke, label) in self.bounds() {
+            curves.extend(bound.iter().map(|case| curve(case, label.into(), REFERENCE, stroke)));
+        }
+        curves
+    }
 }
 
 impl Energy {
@@ -230,7 +258,7 @@ fn bounds(sweep: &Sweep, quantity: impl Fn(&Case) -> f64) -> Vec<Curve> {
     let mut curves = Vec::new();
     for model in &sweep.models {
         let ends = (model.cases[0].velocity, model.cases[model.cases.len() - 1].velocity);
-        for (bound, stroke) in [(&model.instantaneous, Stroke::Dashed), (&model.long_term, Stroke::Dotted)] {
+        for (bound, stroke, _) in model.bounds() {
             if let Some(case) = bound {
                 let level = quantity(case);
                 let points = vec![(ends.0, level), (ends.1, level)];
@@ -238,7 +266,7 @@ fn bounds(sweep: &Sweep, quantity: impl Fn(&Case) -> f64) -> Vec<Curve> {
             }
         }
     }
-    for (stroke, label) in [(Stroke::Dashed, "elastic, G(0)"), (Stroke::Dotted, "elastic, G(∞)")] {
+    for (stroke, label) in BOUNDS {
         if curves.iter().any(|curve| curve.stroke == stroke) {
             curves.push(Curve { label: label.into(), points: Vec::new(), colour: (90, 90, 90), stroke });
         }

@@ -116,9 +116,7 @@ impl<B: Backing> Condensed<B> {
             recoveries: 0,
         })
     }
-}
 
-impl<B: Backing> Condensed<B> {
     /// f += C R. On all ranks: PETSc keeps norms until it sees a vector written to, on each rank for itself.
     fn add_contact(&self, f: &mut Vector) -> Result<()> {
         let mut values = f.view_mut()?;
@@ -158,9 +156,7 @@ impl<B: Backing> Condensed<B> {
         }
         Ok(())
     }
-}
 
-impl<B: Backing> Condensed<B> {
     /// Makes `u`, the accepted state, a start at which the tractions meet the laws.
     fn start(&mut self, step: Step, u: &mut Vector) -> Result<()> {
         self.backing.prepare(step)?;
@@ -265,7 +261,8 @@ impl<B: Backing> TransientProblem for Condensed<B> {
     }
 
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
-        let noise = self.backing.softness() * self.face.noise() + 8.0 * f64::EPSILON * self.face.trial_norm();
+        let softness = self.backing.softness();
+        let noise = |face: &ContactFace| softness * face.noise() + 8.0 * f64::EPSILON * face.trial_norm();
         self.face.test(iteration, norm, self.tolerance, noise)
     }
 

@@ -134,13 +134,7 @@ impl Inside for Sparse {
     }
 
     fn fields(&mut self) -> Result<BulkFields> {
-        let Self { bulk, body, u, .. } = self;
-        let mut effective = Vec::new();
-        bulk.effective(u, |y| {
-            effective.push(body.around(y)?);
-            Ok(())
-        })?;
-        body.fields(u, &effective)
+        self.body.fields_with_memory(&mut self.bulk, &self.u)
     }
 }
 

@@ -27,8 +27,8 @@ impl Station {
     /// D, m/Pa, of a body with the compliance C/c.
     fn own(&self, (compliance, secant): (&Compliance, f64)) -> Matrix2<f64> {
         let mut sum = Matrix2::zeros();
-        for (a, na) in self.nodes.into_iter().zip(self.shape) {
-            for (b, nb) in self.nodes.into_iter().zip(self.shape) {
+        for (a, na) in self.point.nodes.into_iter().zip(self.point.shape) {
+            for (b, nb) in self.point.nodes.into_iter().zip(self.point.shape) {
                 let mut block = Matrix2::zeros();
                 for j in [0, 1] {
                     compliance.add_column(2 * b + j, na * nb, &[2 * a, 2 * a + 1], block.column_mut(j).as_mut_slice());
@@ -36,25 +36,26 @@ impl Station {
                 sum += block;
             }
         }
-        self.frame * sum * self.frame.transpose() * (self.weight / secant)
+        self.point.frame * sum * self.point.frame.transpose() * (self.point.weight / secant)
     }
 
     fn motion(&self, u: &[f64]) -> Vector2<f64> {
-        let node = |i: usize| Vector2::new(u[2 * self.nodes[i]], u[2 * self.nodes[i] + 1]) * self.shape[i];
-        self.frame * (node(0) + node(1))
+        let node =
+            |i: usize| Vector2::new(u[2 * self.point.nodes[i]], u[2 * self.point.nodes[i] + 1]) * self.point.shape[i];
+        self.point.frame * (node(0) + node(1))
     }
 
     /// p under a given q, Pa: p = (lambda + alpha (n.m - c))+.
     fn pressure(&self, local: &Local, shear: f64) -> f64 {
         let Resistance { penalty, multiplier } = self.resistance;
-        let open = multiplier + penalty * (local.without.y + local.own[(1, 0)] * shear - self.clearance);
+        let open = multiplier + penalty * (local.without.y + local.own[(1, 0)] * shear - self.motion.clearance);
         (open / (1.0 + penalty * local.own[(1, 1)])).max(0.0)
     }
 
     /// The slip under given tractions.
     fn slip(&self, local: &Local, shear: f64, pressure: f64) -> Slip {
         let along = local.without.x + local.own[(0, 0)] * shear - local.own[(0, 1)] * pressure;
-        Slip { rate: self.slip.rate - (along - self.before) / self.slip.dt, ..self.slip }
+        Slip { rate: self.motion.slip.rate - (along - self.before) / self.motion.slip.dt, ..self.motion.slip }
     }
 
     /// (q, p) that meet both laws.
@@ -116,8 +117,10 @@ pub fn displacements(
                 continue;
             }
             change += more.norm_squared();
-            let force = station.frame.tr_mul(&more) * (station.weight / secant);
-            for (node, share) in station.nodes.into_iter().zip(station.shape).filter(|(_, share)| *share != 0.0) {
+            let force = station.point.frame.tr_mul(&more) * (station.point.weight / secant);
+            for (node, share) in
+                station.point.nodes.into_iter().zip(station.point.shape).filter(|(_, share)| *share != 0.0)
+            {
                 compliance.add_column(2 * node, share * force.x, &places, u);
                 compliance.add_column(2 * node + 1, share * force.y, &places, u);
             }
@@ -128,14 +131,15 @@ pub fn displacements(
     }
     for (station, traction) in stations.iter().zip(&tractions) {
         // What a stiff law makes of the last digits of a displacement is noise; of its own traction it makes that.
-        if station.shape == [1.0, 0.0] && traction.y > 0.0 {
+        if station.point.shape == [1.0, 0.0] && traction.y > 0.0 {
             let mut motion = station.motion(u);
-            motion.y = station.clearance + (traction.y - station.resistance.multiplier) / station.resistance.penalty;
-            if let Some(rate) = law.and_then(|law| law.rate(*traction, station.slip)) {
-                motion.x = station.before + (station.slip.rate - rate) * station.slip.dt;
+            motion.y =
+                station.motion.clearance + (traction.y - station.resistance.multiplier) / station.resistance.penalty;
+            if let Some(rate) = law.and_then(|law| law.rate(*traction, station.motion.slip)) {
+                motion.x = station.before + (station.motion.slip.rate - rate) * station.motion.slip.dt;
             }
-            let place = station.frame.tr_mul(&motion);
-            (u[2 * station.nodes[0]], u[2 * station.nodes[0] + 1]) = (place.x, place.y);
+            let place = station.point.frame.tr_mul(&motion);
+            (u[2 * station.point.nodes[0]], u[2 * station.point.nodes[0] + 1]) = (place.x, place.y);
         }
     }
     free
