@@ -92,6 +92,16 @@ impl Bulk {
         self.sum(&self.secants(dt), tangent)
     }
 
+    /// The diagonal of the tangent at step length `dt`.
+    pub fn diagonal(&mut self, dt: f64, diagonal: &mut Vector) -> Result<()> {
+        diagonal.set(0.0)?;
+        for (part, secant) in self.parts.iter().zip(self.secants(dt)) {
+            part.stiffness.diagonal(&mut self.work)?;
+            diagonal.add(secant, &self.work)?;
+        }
+        Ok(())
+    }
+
     /// sum = sum_p factor_p K_p
     pub fn sum(&self, factors: &[f64], sum: &mut Matrix) -> Result<()> {
         for (index, (part, &factor)) in self.parts.iter().zip(factors).enumerate() {

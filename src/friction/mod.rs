@@ -89,6 +89,18 @@ impl Friction {
         }
     }
 
+    /// The law with a traction that turns over a slip rate of no less than `sharpness`, m/s, in a step of `dt`, s.
+    pub fn softened(self, sharpness: f64, dt: f64) -> Self {
+        match self {
+            Self::CoulombTanh(law) => {
+                Self::CoulombTanh(CoulombTanh { regularisation: law.regularisation.max(sharpness), ..law })
+            }
+            Self::ElasticSlip(law) => {
+                Self::ElasticSlip(ElasticSlip { elastic_slip: law.elastic_slip.max(sharpness * dt), ..law })
+            }
+        }
+    }
+
     /// The slip rate, m/s, at which the traction is q under the pressure p, given as (q, p), Pa; none where it slips.
     pub fn rate(&self, traction: Vector2<f64>, slip: Slip) -> Option<f64> {
         let share = traction.x / (self.coefficient() * traction.y);

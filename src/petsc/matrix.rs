@@ -132,6 +132,12 @@ impl Matrix {
         check(unsafe { ffi::MatMult(self.raw, x.raw(), y.raw()) })
     }
 
+    /// d = the diagonal.
+    pub fn diagonal(&self, d: &mut Vector) -> Result<()> {
+        // SAFETY: a live matrix and a vector laid out like its rows.
+        unsafe { check(ffi::MatGetDiagonal(self.raw, d.raw())) }
+    }
+
     /// self = x, which has the same pattern.
     pub fn copy_from(&mut self, x: &Self) -> Result<()> {
         // SAFETY: two live matrices of one pattern.

@@ -78,6 +78,9 @@ pub enum Judgement {
 /// The fraction of its length with which a step is tried again when Newton's method fails.
 const CUT: f64 = 0.25;
 
+/// Iterations of a Krylov method before the step is given up.
+const MOST_KRYLOV: i32 = 200;
+
 /// F(t, u, du/dt) = 0, as TS's implicit form wants it.
 ///
 /// Between two calls of [`Self::accepted`] every other method is a pure function of its arguments and of the state at
@@ -194,7 +197,7 @@ impl Integrator {
                 Linear::OwnIterative => (c"gmres", 1e-9),
             };
             check(ffi::KSPSetType(ksp, method.as_ptr()))?;
-            check(ffi::KSPSetTolerances(ksp, reduction, -2.0, -2.0, -2))?;
+            check(ffi::KSPSetTolerances(ksp, reduction, -2.0, -2.0, MOST_KRYLOV))?;
             check(ffi::PCSetType(pc, c"shell".as_ptr()))?;
             check(ffi::TSSetFromOptions(ts)).map_err(refused)?;
             if !shell {

@@ -27,6 +27,8 @@ pub struct ContactFace {
     /// Their derivatives at the trial state; zero where a component is held.
     pub tangent: Tangent,
     first_norm: f64,
+    /// Whether the first guess was within the noise.
+    settled: bool,
     /// Only where the energy is asked for.
     exchange: Option<Exchange>,
 }
@@ -53,6 +55,7 @@ impl ContactFace {
             residual: Residual::new(),
             tangent: Tangent::default(),
             first_norm: 0.0,
+            settled: false,
             exchange: None,
         }
     }
@@ -141,14 +144,16 @@ impl ContactFace {
     }
 
     /// Whether the laws are too stiff for Newton's method from where the face was, before a body of the given softness, m
-    /// per N/m: penalty beside the body's stiffness, or rates of the indenter beside the friction law's own.
+    /// per N/m: penalty beside the body's stiffness, or rates of the indenter beside the friction law's own; or the step
+    /// is a piece of a planned one, for which it was not good enough.
     pub fn is_stiff(&self, step: Step, softness: f64) -> Result<bool> {
         const PENALTY: f64 = 1e4;
         const RATE: f64 = 1e3;
         let placement = self.placement(step)?;
         let rate = placement.sliding_rate.abs().max(placement.approach_rate.abs());
         let sharp = |law: &Friction| rate > RATE * law.sharpness(step.dt);
-        Ok(self.interface.stiffest() * softness > PENALTY || self.interface.friction().is_some_and(sharp))
+        let piece = self.phase()?.is_piece(step.t, step.dt);
+        Ok(piece || self.interface.stiffest() * softness > PENALTY || self.interface.friction().is_some_and(sharp))
     }
 
     /// The points of the contact in a step from the accepted state.
@@ -169,6 +174,11 @@ impl ContactFace {
         let to = self.surface_at(step, to);
         let placement = self.placement(step)?;
         self.interface.limit(placement, [&from, &to])
+    }
+
+    /// Whether the first guess was within the noise, so that a Newton step from it could only add to that.
+    pub fn is_settled(&self) -> bool {
+        self.settled
     }
 
     /// The face at given displacements at the end of a step.
@@ -201,9 +211,13 @@ impl ContactFace {
         }
         let scale = self.trial.scale.max(self.accepted.scale);
         let reference = if scale > 0.0 { scale } else { self.first_norm };
-        // A start that is only within the noise has no tangent yet, by which the forces are refined.
         let converged = match iteration {
-            0 => norm <= 8.0 * f64::EPSILON * reference,
+            // A start that is only within the noise has no tangent yet, by which the forces are refined.
+            0 => {
+                let exact = norm <= 8.0 * f64::EPSILON * reference;
+                self.settled = !exact && norm <= noise(self);
+                exact
+            }
             _ => norm <= tolerance * reference || norm <= noise(self),
         };
         if converged { Verdict::Converged } else { Verdict::Iterate }

@@ -6,6 +6,7 @@ mod condensed;
 mod driver;
 mod face;
 mod monolithic;
+mod start;
 mod woodbury;
 
 use crate::energy::Energy;

@@ -11,6 +11,8 @@
 //! C is had by blocks of columns, when a node of theirs first comes into contact. What round-off leaves is for the
 //! Krylov method around it. Nothing here depends on earlier steps, to the last digit.
 
+use std::ops::Range;
+
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
@@ -57,6 +59,30 @@ impl Woodbury {
     /// To be called when the contact's tangent has changed.
     pub fn renew(&mut self) {
         self.contact = None;
+    }
+
+    /// Whether it was asked to solve: else another solver is in use, and no factor is to be made.
+    pub fn serves(&self) -> bool {
+        self.base.is_some()
+    }
+
+    /// C and l at step length `dt`, all of C. Collective.
+    pub fn compliance(
+        &mut self,
+        (bulk, dt): (&Bulk, f64),
+        face: &mut ContactFace,
+    ) -> Result<Option<(&Compliance, f64)>> {
+        self.factorise(bulk, dt)?;
+        self.complete(face, |_| true)?;
+        Ok(self.base.as_ref().map(|base| (&base.compliance, base.scale)))
+    }
+
+    /// x = A^-1 b at the step length of the last [`Self::compliance`]. Collective.
+    pub fn solve_bulk(&mut self, b: &Vector, x: &mut Vector) -> Result<()> {
+        let Some(base) = &self.base else { return Err(Error::Internal("no factor of the bulk".into())) };
+        base.factor.solve(b, x)?;
+        self.done[1] += 1;
+        x.scale(1.0 / base.scale)
     }
 
     /// x = J^-1 b at step length `dt` and the face's tangent. Collective.
@@ -118,13 +144,21 @@ impl Woodbury {
 
     /// Makes `contact` hold for the face's tangent.
     fn update(&mut self, face: &mut ContactFace) -> Result<()> {
-        let Some(base) = &mut self.base else { return Ok(()) };
         let columns = SparseColumns::new(&face.tangent, &face.interface().face().edges, 0.0);
+        self.complete(face, |block| columns.rows().any(|row| block.contains(&row)))?;
+        let Some(base) = &self.base else { return Ok(()) };
+        self.contact = Some(Factor::new(&base.compliance, columns, base.scale)?);
+        Ok(())
+    }
+
+    /// Makes the columns of C known that are in a block that is needed.
+    fn complete(&mut self, face: &mut ContactFace, needed: impl Fn(&Range<usize>) -> bool) -> Result<()> {
+        let Some(base) = &mut self.base else { return Ok(()) };
         // In whole blocks, always the same ones: then a column has the same digits whatever came before it.
         let order = base.known.len();
         for first in (0..order).step_by(BLOCK) {
             let block = first..order.min(first + BLOCK);
-            if !columns.rows().any(|row| block.contains(&row) && !base.known[row]) {
+            if base.known[first] || !needed(&block) {
                 continue;
             }
             let rows: Vec<(i32, bool)> =
@@ -136,7 +170,6 @@ impl Woodbury {
             })?;
             self.done[1] += block.len();
         }
-        self.contact = Some(Factor::new(&base.compliance, columns, base.scale)?);
         Ok(())
     }
 }

@@ -6,10 +6,13 @@
 //! 1e-12 to 0.3; four profiles, four sides, elastic to five arms, both memories and Poisson rules, sliding on, turning round
 //! and lifting off, everything in steps that pass anything from nothing to very many wavelengths.
 //!
-//! `MPJR_EXTREMES=500 cargo test --release --test extremes -- random` takes 500 scenes instead of the first 120, and
-//! `MPJR_EXTREMES_OUT=FILE.csv` writes a line for each.
+//! `MPJR_EXTREMES=500 cargo test --release --test extremes -- random` takes 500 scenes each instead of the first few.
+//! With `-- random_scenes`, `MPJR_EXTREMES_CHOICE=monolithic,gauss` (or `coulomb_elastic_slip`, `augmented`) takes other
+//! ways to solve them, `MPJR_EXTREMES_OUT=FILE.csv` writes a line for each, and `MPJR_EXTREMES_SCENES=DIR` leaves those that
+//! do not converge there.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod exact;
 #[path = "../common/mpi.rs"]
 mod mpi_cases;
 mod sample;
@@ -22,10 +25,13 @@ use mpi_cases::Case;
 use mpjr::error::{Error, Result};
 use mpjr::scene::{self, Source};
 use mpjr::solution::{self, Solution};
-use sample::{Draw, Sample};
+use sample::{Choice, Draw, Sample};
 
 const CASES: &[Case] = &[
     Case::new("random_scenes", &[1], random_scenes),
+    Case::new("random_gauss_scenes", &[1], random_gauss_scenes),
+    Case::new("random_monolithic_scenes", &[1], random_monolithic_scenes),
+    Case::new("full_contact_is_that_of_the_closed_form", &[1], exact::full_contact),
     Case::new("units_do_not_matter", &[1], units_do_not_matter),
     Case::new("everything_in_one_step", &[1], everything_in_one_step),
 ];
@@ -40,16 +46,33 @@ fn solve(world: &SimpleCommunicator, text: &str) -> Result<Solution> {
     solution::solve(world, &scene)
 }
 
-/// Issue 6: of a random sample at least 95 % converge (found: 98.2 % of 500), all of those keep the laws, and the others
-/// say so with a remedy.
+/// Issue 6: of a random sample at least 95 % converge, all of those keep the laws, and the others say so with a remedy.
+/// As a scene gets that says nothing else; found: 99.2 % of 500.
 fn random_scenes(world: &SimpleCommunicator, _: &Path) {
-    let count = std::env::var("MPJR_EXTREMES").ok().and_then(|count| count.parse().ok()).unwrap_or(120);
+    random(world, &std::env::var("MPJR_EXTREMES_CHOICE").unwrap_or_default(), 120);
+}
+
+/// The same with Gauss points; found: 98.8 % of 500.
+fn random_gauss_scenes(world: &SimpleCommunicator, _: &Path) {
+    random(world, "gauss", 60);
+}
+
+/// The same by the monolithic strategy; found: MONO % of 500.
+fn random_monolithic_scenes(world: &SimpleCommunicator, _: &Path) {
+    random(world, "monolithic", 40);
+}
+
+fn random(world: &SimpleCommunicator, choice: &str, count: usize) {
+    let variable = |name: &str| std::env::var(name).ok();
+    let count = variable("MPJR_EXTREMES").and_then(|count| count.parse().ok()).unwrap_or(count);
+    let scenes = variable("MPJR_EXTREMES_SCENES");
     let mut draw = Draw(1);
     let mut converged = 0;
     let mut table = String::from(Sample::COLUMNS);
     for i in 0..count {
-        let sample = Sample::random(&mut draw);
-        let outcome = solve(world, &sample.scene(1.0, 1.0, 1.0));
+        let sample = Sample::random(&mut draw, Choice::of(choice));
+        let scene = sample.scene(1.0, 1.0, 1.0);
+        let outcome = solve(world, &scene);
         writeln!(table, "{},{}", sample.row(), u8::from(outcome.is_ok())).unwrap();
         match outcome {
             Ok(solution) => {
@@ -60,18 +83,22 @@ fn random_scenes(world: &SimpleCommunicator, _: &Path) {
                 let text = error.to_string();
                 assert!(text.contains("no convergence in the step") && text.contains("may help"), "{text}");
                 println!("{i}: {text} {sample:?}");
+                if let Some(directory) = &scenes {
+                    std::fs::write(Path::new(directory).join(format!("{i:03}.toml")), &scene).unwrap();
+                }
             }
             Err(other) => panic!("{i}: {other}\n{sample:?}"),
         }
     }
     println!("{converged} of {count} converge");
-    if let Ok(file) = std::env::var("MPJR_EXTREMES_OUT") {
+    if let Some(file) = variable("MPJR_EXTREMES_OUT") {
         std::fs::write(file, table).unwrap();
     }
-    assert!(converged as f64 >= 0.95 * count as f64, "only {converged} of {count} converge");
+    assert!(f64::from(converged) >= 0.95 * count as f64, "only {converged} of {count} converge");
 }
 
-/// All numbers finite, 0 <= p, |q| <= f p, no traction in the gap; |Q| <= f N; energy goes in and is not made.
+/// All numbers finite, 0 <= p, |q| <= f p, no traction in the gap; |Q| <= f N; N the sum of the nodal pressures; energy is
+/// not made.
 fn keeps_the_laws(sample: &Sample, solution: &Solution) -> std::result::Result<(), String> {
     let f = sample.friction * (1.0 + 1e-9);
     for row in &solution.history {
@@ -81,12 +108,41 @@ fn keeps_the_laws(sample: &Sample, solution: &Solution) -> std::result::Result<(
             return Err(format!("{row:?}"));
         }
     }
-    for end in &solution.ends {
+    for (phase, end) in solution.ends.iter().enumerate() {
         for (node, ((p, q), gap)) in end.pressure.iter().zip(&end.shear).zip(&end.gap).enumerate() {
             let known = p.is_finite() && q.is_finite() && gap.is_finite();
             if !known || *p < 0.0 || q.abs() > f * p || (*gap > 0.0 && *p != 0.0) {
                 return Err(format!("node {node}: p = {p:e}, q = {q:e}, gap = {gap:e}"));
             }
+        }
+        let (normal, sum) = (solution.end_of(phase).normal_force, sample.resultant(&end.pressure));
+        if sample.choice.quadrature == "nodal" && (normal - sum).abs() > 1e-12 * sum {
+            return Err(format!("phase {phase}: N = {normal:e}, the nodal pressures come to {sum:e}"));
+        }
+    }
+    makes_no_energy(solution)
+}
+
+/// What the dashpots dissipate is a square at every step, exact for the rate that either memory takes: it never falls
+/// by more than the round-off of what is stored and has been worked. Friction takes the traction as the mean of both ends of a step: at
+/// a turn what the old one would still gain, no more than half of it times the slip, is not dissipated.
+fn makes_no_energy(solution: &Solution) -> std::result::Result<(), String> {
+    let mut scale = 0.0_f64;
+    for pair in solution.history.windows(2) {
+        let [before, after] = [&pair[0].energy, &pair[1].energy];
+        scale = scale.max(after.external_work.abs()).max(after.stored).max(after.penalty);
+        let (viscous, frictional) = (
+            after.viscoelastic_dissipation - before.viscoelastic_dissipation,
+            after.friction_dissipation - before.friction_dissipation,
+        );
+        println!(
+            "ENERGY {:e} {:e} {:e}",
+            viscous.min(0.0) / scale.max(1e-300),
+            frictional.min(0.0) / scale.max(1e-300),
+            scale
+        );
+        if viscous < -1e-9 * scale {
+            return Err(format!("the arms give {viscous:e} J/m back: {pair:?}"));
         }
     }
     Ok(())
@@ -112,9 +168,10 @@ fn units_do_not_matter(world: &SimpleCommunicator, _: &Path) {
         sides: "periodic",
         profile: "harmonic",
         motion: "turn",
+        choice: Choice::DEFAULT,
     };
     let forces = |length: f64, modulus: f64, time: f64| {
-        let text = sample.scene(length, modulus, time).replace("[indenter]", "[solver]\ntolerance = 1e-12\n[indenter]");
+        let text = sample.scene(length, modulus, time).replace("[solver]", "[solver]\ntolerance = 1e-12");
         let unit = length * modulus;
         let solution = solve(world, &text).unwrap();
         let of = |row: &mpjr::output::HistoryRow| [row.normal_force, row.tangential_force].map(|force| force / unit);

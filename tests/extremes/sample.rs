@@ -31,6 +31,40 @@ impl Draw {
     }
 }
 
+/// How a scene is solved, which no draw decides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Choice {
+    pub strategy: &'static str,
+    pub quadrature: &'static str,
+    pub law: &'static str,
+    pub method: &'static str,
+}
+
+impl Choice {
+    /// What a scene gets that says nothing.
+    pub const DEFAULT: Self =
+        Self { strategy: "condensed", quadrature: "nodal", law: "coulomb_tanh", method: "penalty" };
+
+    /// The default but for `words`, the values of some keys with commas between them.
+    pub fn of(words: &str) -> Self {
+        let mut choice = Self::DEFAULT;
+        for word in words.split(',').filter(|word| !word.is_empty()) {
+            match word {
+                "condensed" => choice.strategy = "condensed",
+                "monolithic" => choice.strategy = "monolithic",
+                "nodal" => choice.quadrature = "nodal",
+                "gauss" => choice.quadrature = "gauss",
+                "coulomb_tanh" => choice.law = "coulomb_tanh",
+                "coulomb_elastic_slip" => choice.law = "coulomb_elastic_slip",
+                "penalty" => choice.method = "penalty",
+                "augmented" => choice.method = "augmented",
+                other => panic!("{other}: no such choice"),
+            }
+        }
+        choice
+    }
+}
+
 /// A scene with one wavelength of 1 m, E = 1 Pa and relaxation times around 1 s; lengths and moduli that matter are in
 /// proportion to those.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,6 +92,7 @@ pub struct Sample {
     pub profile: &'static str,
     /// What follows the approach: to slide, to slide and turn round, to slide and lift off.
     pub motion: &'static str,
+    pub choice: Choice,
 }
 
 impl Sample {
@@ -74,8 +109,8 @@ impl Sample {
         )
     }
 
-    /// A draw over all ranges.
-    pub fn random(draw: &mut Draw) -> Self {
+    /// A draw over all ranges, to be solved as chosen.
+    pub fn random(draw: &mut Draw, choice: Choice) -> Self {
         let poisson = match draw.unit() {
             u if u < 0.2 => 0.5 - draw.decades(-5.0, -1.0),
             _ => draw.between(-0.9, 0.49),
@@ -103,7 +138,15 @@ impl Sample {
             sides: draw.one_of(&["periodic", "free", "roller", "fixed"]),
             profile: draw.one_of(&["harmonic", "parabola", "circle", "wedge"]),
             motion: draw.one_of(&["slide", "turn", "lift"]),
+            choice,
         }
+    }
+
+    /// The integral of a pressure over the face of the scene in units of 1, given at its nodes from left to right, N/m.
+    pub fn resultant(&self, pressure: &[f64]) -> f64 {
+        let half =
+            |end: Option<&f64>| if self.sides == "periodic" { 0.0 } else { 0.5 * end.copied().unwrap_or_default() };
+        (pressure.iter().sum::<f64>() - half(pressure.first()) - half(pressure.last())) / self.cells[0] as f64
     }
 
     /// The scene, in units where the wavelength is `length` m, E is `modulus` Pa and relaxation times are of `time` s.
@@ -141,13 +184,18 @@ impl Sample {
         }
         let penalty = self.penalty * modulus / (height * length);
         let _ = write!(text, "[indenter]\n{profile}\n[contact]\npenalty = {penalty:e}\n");
+        let Choice { strategy, quadrature, law, method } = self.choice;
+        let _ = write!(text, "quadrature = \"{quadrature}\"\nmethod = \"{method}\"\n");
+        let _ = write!(text, "[solver]\nstrategy = \"{strategy}\"\n");
         if self.friction > 0.0 {
-            let _ = write!(
-                text,
-                "[friction]\nlaw = \"coulomb_tanh\"\ncoefficient = {}\nregularisation = {:e}\n",
-                self.friction,
-                self.regularisation * speed
-            );
+            // An elastic slip over which the traction turns within a step as with the other law.
+            let (key, length) = match law {
+                "coulomb_elastic_slip" => ("elastic_slip", self.step * time),
+                _ => ("regularisation", 1.0),
+            };
+            let sharpness = self.regularisation * speed * length;
+            let _ =
+                write!(text, "[friction]\nlaw = \"{law}\"\ncoefficient = {}\n{key} = {sharpness:e}\n", self.friction);
         }
         let duration = 4.0 * self.step * time;
         let phase = |rest: String| format!("[[phase]]\nduration = {duration:e}\nsteps = 4\n{rest}\n");

@@ -19,11 +19,10 @@ mod layered;
 mod newton;
 mod remembering;
 mod sparse;
-mod start;
 mod waves;
 
 use super::face::ContactFace;
-use super::{BulkFields, Contact, TransientProblem, Work};
+use super::{BulkFields, Contact, TransientProblem, Work, start};
 use crate::energy::{BodyEnergy, Energy};
 use crate::error::Result;
 use crate::interface::{Interface, Residual};
@@ -169,9 +168,9 @@ impl<B: Backing> Condensed<B> {
             return Ok(());
         };
         let free = u.view()?.iter().zip(y.view()?.iter()).map(|(u, y)| u - y / secant).collect();
-        let friction = self.face.interface().friction();
-        let start = start::displacements(&stations, friction, (compliance, secant), free);
-        u.view_mut()?.copy_from_slice(&start);
+        let friction = self.face.interface().friction().copied();
+        let start = start::start(stations, friction, (compliance, secant), free)?;
+        u.view_mut()?.copy_from_slice(&start.displacements);
         Ok(())
     }
 }
@@ -249,6 +248,10 @@ impl<B: Backing> TransientProblem for Condensed<B> {
     }
 
     fn limit(&mut self, step: Step, u: &Vector, decrement: &mut Vector) -> Result<bool> {
+        if self.face.is_settled() {
+            decrement.set(0.0)?;
+            return Ok(true);
+        }
         let limits = self.face.limit(step, u, decrement)?;
         let mut values = decrement.view_mut()?;
         for (node, increment) in &limits {
