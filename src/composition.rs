@@ -187,7 +187,8 @@ fn following(
         Some(series) => Some(Relaxation { arms: Arms::new(times, memory, &u)?, series }),
         None => None,
     };
-    let interior = Interior::new(comm, solid);
+    let column = periodic_column(scene, &solid);
+    let interior = Interior::new(comm, solid, column);
     let backing = Following { compliance, softness, relaxation, interior, secant: 1.0, account: None };
     condensed(comm, scene, mesh, u, (interface, backing))
 }
