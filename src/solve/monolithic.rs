@@ -86,13 +86,13 @@ impl Monolithic {
         let (mut load, mut change, mut accepted) = (u.like()?, u.like()?, u.like()?);
         accepted.copy_from(u)?;
         self.bulk.force(step, u, &change, &mut load)?;
-        self.inverse.compliance((&self.bulk, step.dt), &mut self.face)?;
+        self.inverse.compliance(&self.bulk, step.dt)?;
         self.inverse.solve_bulk(&load, &mut change)?;
         u.add(-1.0, &change)?;
         let free = self.face.gather(u)?;
         let stations = self.face.stations(step)?;
         let friction = self.face.interface().friction().copied();
-        let Some(behind) = self.inverse.compliance((&self.bulk, step.dt), &mut self.face)? else { return Ok(()) };
+        let Some(behind) = self.inverse.compliance(&self.bulk, step.dt)? else { return Ok(()) };
         let start = start::start(stations, friction, behind, free)?;
         load.set(0.0)?;
         self.on_face(&start.forces, &mut load)?;

@@ -54,12 +54,12 @@ fn random_scenes(world: &SimpleCommunicator, _: &Path) {
 
 /// The same with Gauss points; found: 98.8 % of 500.
 fn random_gauss_scenes(world: &SimpleCommunicator, _: &Path) {
-    random(world, "gauss", 60);
+    random(world, "gauss", 120);
 }
 
-/// The same by the monolithic strategy; found: MONO % of 500.
+/// The same by the monolithic strategy; found: 97.4 % of 500.
 fn random_monolithic_scenes(world: &SimpleCommunicator, _: &Path) {
-    random(world, "monolithic", 40);
+    random(world, "monolithic", 70);
 }
 
 fn random(world: &SimpleCommunicator, choice: &str, count: usize) {
@@ -120,29 +120,25 @@ fn keeps_the_laws(sample: &Sample, solution: &Solution) -> std::result::Result<(
             return Err(format!("phase {phase}: N = {normal:e}, the nodal pressures come to {sum:e}"));
         }
     }
-    makes_no_energy(solution)
+    makes_no_energy(sample, solution)
 }
 
-/// What the dashpots dissipate is a square at every step, exact for the rate that either memory takes: it never falls
-/// by more than the round-off of what is stored and has been worked. Friction takes the traction as the mean of both ends of a step: at
-/// a turn what the old one would still gain, no more than half of it times the slip, is not dissipated.
-fn makes_no_energy(solution: &Solution) -> std::result::Result<(), String> {
-    let mut scale = 0.0_f64;
+/// What the dashpots dissipate in a step is a square, for the rate that either memory takes, and is not negative but for
+/// the digits that a stiff penalty leaves of the contact forces: 1e-6 of the largest energy so far. Friction takes
+/// the traction as the mean of both ends of a step, so that at a turn half of the old one, at most f N/2, works the wrong way
+/// along the slip; and that is at most the way of the indenter and that of the face.
+fn makes_no_energy(sample: &Sample, solution: &Solution) -> std::result::Result<(), String> {
+    let sideways = solution.ends.iter().flat_map(|end| &end.displacement_x).fold(0.0, |most: f64, u| most.max(u.abs()));
+    let mut largest = 0.0_f64;
     for pair in solution.history.windows(2) {
         let [before, after] = [&pair[0].energy, &pair[1].energy];
-        scale = scale.max(after.external_work.abs()).max(after.stored).max(after.penalty);
-        let (viscous, frictional) = (
-            after.viscoelastic_dissipation - before.viscoelastic_dissipation,
-            after.friction_dissipation - before.friction_dissipation,
-        );
-        println!(
-            "ENERGY {:e} {:e} {:e}",
-            viscous.min(0.0) / scale.max(1e-300),
-            frictional.min(0.0) / scale.max(1e-300),
-            scale
-        );
-        if viscous < -1e-9 * scale {
-            return Err(format!("the arms give {viscous:e} J/m back: {pair:?}"));
+        largest = largest.max(after.external_work.abs()).max(after.stored).max(after.penalty);
+        let arms = after.viscoelastic_dissipation - before.viscoelastic_dissipation;
+        let friction = after.friction_dissipation - before.friction_dissipation;
+        let slip = (pair[1].sliding - pair[0].sliding).abs() + 2.0 * sideways;
+        let turn = 0.5 * sample.friction * pair[0].normal_force * slip;
+        if arms < -1e-6 * largest || friction < -turn * (1.0 + 1e-6) {
+            return Err(format!("arms {arms:e} J/m, friction {friction:e} J/m (-{turn:e}), of {largest:e}: {pair:?}"));
         }
     }
     Ok(())
