@@ -104,12 +104,6 @@ impl Phase {
         self.start + self.duration
     }
 
-    /// Whether a step of length `dt` that ends at `t`, s, is a piece of one that was planned.
-    pub fn is_piece(&self, t: f64, dt: f64) -> bool {
-        let planned = self.steps.partition_point(|target| target.time < t - 0.5 * dt);
-        self.adaptive.is_none() && self.steps.get(planned).is_some_and(|target| dt < 0.5 * target.dt)
-    }
-
     /// Where the indenter is at the end of a step of length `dt` that ends at `t`, s.
     pub fn placement(&self, t: f64, dt: f64) -> Placement {
         let [from, to] = self.approach;

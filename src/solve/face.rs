@@ -144,16 +144,14 @@ impl ContactFace {
     }
 
     /// Whether the laws are too stiff for Newton's method from where the face was, before a body of the given softness, m
-    /// per N/m: penalty beside the body's stiffness, or rates of the indenter beside the friction law's own; or the step
-    /// is a piece of a planned one, for which it was not good enough.
+    /// per N/m: penalty beside the body's stiffness, or rates of the indenter beside the friction law's own.
     pub fn is_stiff(&self, step: Step, softness: f64) -> Result<bool> {
         const PENALTY: f64 = 1e4;
-        const RATE: f64 = 1e3;
+        const RATE: f64 = 500.0;
         let placement = self.placement(step)?;
         let rate = placement.sliding_rate.abs().max(placement.approach_rate.abs());
         let sharp = |law: &Friction| rate > RATE * law.sharpness(step.dt);
-        let piece = self.phase()?.is_piece(step.t, step.dt);
-        Ok(piece || self.interface.stiffest() * softness > PENALTY || self.interface.friction().is_some_and(sharp))
+        Ok(self.interface.stiffest() * softness > PENALTY || self.interface.friction().is_some_and(sharp))
     }
 
     /// The points of the contact in a step from the accepted state.

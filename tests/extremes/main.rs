@@ -52,7 +52,7 @@ fn random_scenes(world: &SimpleCommunicator, _: &Path) {
     random(world, &std::env::var("MPJR_EXTREMES_CHOICE").unwrap_or_default(), 120);
 }
 
-/// The same with Gauss points; found: 98.8 % of 500.
+/// The same with Gauss points; found: 98.6 % of 500.
 fn random_gauss_scenes(world: &SimpleCommunicator, _: &Path) {
     random(world, "gauss", 120);
 }

@@ -24,9 +24,15 @@ const REACH: f64 = 0.99;
 /// mu over that of the beginning, at the end.
 const LEAST: f64 = 1e-26;
 
+/// A step of Newton's method.
+struct Inner {
+    tractions: Vec<Vector2<f64>>,
+    slacks: Vec<f64>,
+}
+
 impl Tractions<'_> {
     /// Follows the tractions from well inside to the laws.
-    pub(super) fn from_inside(&mut self) -> Result<()> {
+    pub(super) fn approach_from_inside(&mut self) -> Result<()> {
         let law = self.law;
         let influence = self.influences();
         let largest = self.values.iter().fold(0.0, |most: f64, t| most.max(t.y));
@@ -51,7 +57,9 @@ impl Tractions<'_> {
                 self.law = Some(law.softened(fastest * (complementarity / first).sqrt(), station.motion.slip.dt));
             }
             let target = REDUCTION * complementarity;
-            let Some((more, wider)) = self.inner_step(&slack, target, &influence)? else { break };
+            let Some(Inner { tractions: more, slacks: wider }) = self.inner_step(&slack, target, &influence)? else {
+                break;
+            };
             let reach = |most: f64, value: f64, change: f64| {
                 if change < 0.0 { most.min(-REACH * value / change) } else { most }
             };
@@ -78,12 +86,7 @@ impl Tractions<'_> {
     }
 
     /// Newton's step of (q, p) and of the slacks to p s = `target`; none where its system is singular.
-    fn inner_step(
-        &self,
-        slack: &[f64],
-        target: f64,
-        influence: &[Matrix2<f64>],
-    ) -> Result<Option<(Vec<Vector2<f64>>, Vec<f64>)>> {
+    fn inner_step(&self, slack: &[f64], target: f64, influence: &[Matrix2<f64>]) -> Result<Option<Inner>> {
         let count = self.stations.len();
         let order = 2 * count;
         let (mut matrix, mut right) = (vec![0.0; order * order], vec![0.0; order]);
@@ -123,6 +126,6 @@ impl Tractions<'_> {
         }
         let more: Vec<_> = solution.as_chunks().0.iter().map(|&[q, p]| Vector2::new(q, p)).collect();
         let wider = (0..count).map(|i| (target - slack[i] * more[i].y) / self.values[i].y - slack[i]).collect();
-        Ok(Some((more, wider)))
+        Ok(Some(Inner { tractions: more, slacks: wider }))
     }
 }

@@ -23,13 +23,16 @@ use station::Local;
 const SWEEPS: usize = 20;
 /// Rounds of sweeps and Newton's method before the tractions are approached from inside, and after it.
 const FIRST_ROUNDS: usize = 5;
-/// Rounds at most, and products of a compliance and a force in all: it is a start only.
-const MOST_ROUNDS: usize = 20;
+const MORE_ROUNDS: usize = 20;
+/// Rounds of sweeps alone at most, and products of a compliance and a force in all: it is a start only.
+const MOST_ROUNDS: usize = 100;
 const MOST_PRODUCTS: usize = 500_000_000;
 /// Visits of each point at the end, to bring its displacement to its traction.
 const ADJUSTMENTS: usize = 30;
 /// The square of what is left, over that of the tractions, with which they have settled.
 const SETTLED: f64 = 1e-24;
+/// The same for those that do not settle soon: round-off may not let them come closer.
+const ENOUGH: f64 = 1e-20;
 
 /// A start.
 pub struct Start {
@@ -44,14 +47,19 @@ pub struct Start {
 pub fn start(stations: Vec<Station>, law: Option<Friction>, behind: Behind<'_>, free: Vec<f64>) -> Result<Start> {
     let rounds = (MOST_PRODUCTS / (free.len() * free.len() * SWEEPS)).clamp(1, MOST_ROUNDS);
     let mut tractions = Tractions::new(stations, law, behind, free);
-    if !tractions.approach(rounds.min(FIRST_ROUNDS))? {
-        if 2 * tractions.stations.len() <= LARGE_FACE {
-            tractions.from_inside()?;
-            tractions.refine()?;
-        }
-        tractions.approach(rounds)?;
+    if tractions.approach(rounds.min(FIRST_ROUNDS), SETTLED)? {
+        return Ok(tractions.into_start());
     }
-    Ok(Start { forces: tractions.forces(), displacements: tractions.displacements() })
+    if 2 * tractions.stations.len() <= LARGE_FACE {
+        tractions.approach_from_inside()?;
+        tractions.refine()?;
+    }
+    if !tractions.approach(rounds.min(MORE_ROUNDS), ENOUGH)? {
+        // Strong friction may have several answers, or none near; then sweeps alone come from no traction to the least.
+        tractions.set(vec![Vector2::zeros(); tractions.values.len()]);
+        (0..rounds * SWEEPS).find(|_| tractions.sweep() <= SETTLED);
+    }
+    Ok(tractions.into_start())
 }
 
 /// What stands behind the face, of the compliance C/c: C and c.
@@ -150,6 +158,11 @@ impl<'a> Tractions<'a> {
         forces
     }
 
+    /// The state under the tractions.
+    fn into_start(self) -> Start {
+        Start { forces: self.forces(), displacements: self.displacements() }
+    }
+
     /// The face under the tractions.
     ///
     /// What a stiff law makes of the last digits of a displacement is noise; so the points are brought to where the laws
@@ -176,17 +189,18 @@ impl<'a> Tractions<'a> {
         self.u
     }
 
-    /// Sweeps, with Newton's method between, so many times or until the laws are met; whether they are.
-    fn approach(&mut self, rounds: usize) -> Result<bool> {
+    /// Sweeps, with Newton's method between, so many times or until the tractions have settled to `enough`; whether they
+    /// have.
+    fn approach(&mut self, rounds: usize, enough: f64) -> Result<bool> {
         for _ in 0..rounds {
             for _ in 0..SWEEPS {
-                if self.sweep() <= SETTLED {
+                if self.sweep() <= enough {
                     return Ok(true);
                 }
             }
             self.refine()?;
         }
-        Ok(self.sweep() <= SETTLED)
+        Ok(self.sweep() <= enough)
     }
 
     /// The fastest that a point goes, of the indenter over the layer or of the layer without contact, m/s.
