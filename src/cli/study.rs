@@ -9,6 +9,7 @@ use toml::{Table, Value};
 
 use super::summary::seconds;
 use super::sweep::{line, replace};
+use super::terminal;
 use crate::error::{Error, Result};
 use crate::parallel::agree;
 use crate::plot::replaceable;
@@ -70,7 +71,7 @@ fn climb(world: &SimpleCommunicator, arguments: &StudyArguments) -> Result<()> {
     }
     let tell = |changes: &str, run: Option<&Run>| {
         if chatty {
-            println!("{}", told(changes, run));
+            terminal::tell(told(changes, run));
         }
     };
     let mut solver = Solver::new(&subject, &tell);
@@ -95,7 +96,7 @@ fn climb(world: &SimpleCommunicator, arguments: &StudyArguments) -> Result<()> {
     };
     agree(world, wrote)?;
     if chatty {
-        print!("{}", findings.table());
+        terminal::tell(findings.table());
     }
     if finest.is_none() {
         let reason =
@@ -105,7 +106,7 @@ fn climb(world: &SimpleCommunicator, arguments: &StudyArguments) -> Result<()> {
     match (arguments.error, findings.advised.first()) {
         (Some(_), Some(Some(advice))) => {
             if tells {
-                println!("{}", options(&advice.changes));
+                terminal::tell(options(&advice.changes));
             }
             Ok(())
         }
@@ -115,7 +116,7 @@ fn climb(world: &SimpleCommunicator, arguments: &StudyArguments) -> Result<()> {
         ))),
         (None, _) => {
             if let (true, Some(out)) = (tells, &out) {
-                println!("tables and figure: {}", out.display());
+                terminal::tell(format_args!("tables and figure: {}", out.display()));
             }
             Ok(())
         }

@@ -10,6 +10,7 @@ use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use super::super::progress::terminal;
 use super::super::summary::seconds;
+use super::super::terminal::tell;
 use super::claim::{Told, told};
 use super::folder::{Folder, State};
 use crate::error::{Error, Result};
@@ -48,7 +49,7 @@ impl Board {
         let steps = |cases: &[usize]| cases.iter().map(|&case| sweep.cases[case].scene.steps()).sum();
         let done: Vec<usize> = chosen.iter().copied().filter(is_done).collect();
         if !done.is_empty() {
-            println!("{} of {} case(s) were complete before", done.len(), chosen.len());
+            tell(format_args!("{} of {} case(s) were complete before", done.len(), chosen.len()));
         }
         let mut view = View {
             folder: folder.clone(),
@@ -130,7 +131,7 @@ impl View {
                 // A terminal that takes no line shows the bars only.
                 let _ = all.println(line);
             }
-            None => println!("{line}"),
+            None => tell(line),
         }
     }
 
@@ -148,9 +149,9 @@ impl View {
             if self.last_line.elapsed() >= LINE_EVERY {
                 self.last_line = Instant::now();
                 for (case, [done, steps]) in running {
-                    println!("case {case} ({}): {done}/{steps} steps", self.sweep.label(*case));
+                    tell(format_args!("case {case} ({}): {done}/{steps} steps", self.sweep.label(*case)));
                 }
-                println!("{total}");
+                tell(total);
             }
             return;
         };
