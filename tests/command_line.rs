@@ -218,6 +218,21 @@ fn check_prints_the_resolved_scene() {
     }
 }
 
+/// The estimate of the cost counts the solutions that multipliers take, and says so.
+#[test]
+fn check_counts_augmentations() {
+    let estimate = |set: &str| {
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::write(directory.path().join("scene.toml"), SLIDING).unwrap();
+        let output = program(1).args(["check", "scene.toml", "--set", set]).current_dir(&directory).output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        text.lines().find_map(|line| line.strip_prefix("estimate:")).unwrap().trim().to_owned()
+    };
+    let (plain, augmented) = (estimate("contact.method=penalty"), estimate("contact.method=augmented"));
+    assert!(augmented.contains(" per step with 2 augmentations, ") && !plain.contains("augmentations"), "{augmented}");
+    assert!(!plain.starts_with(augmented.split(" per step").next().unwrap()), "{plain} {augmented}");
+}
+
 /// A solver that is allowed one Newton iteration cannot follow contact that grows or begins to slip: after the stated number of cuts the
 /// run ends with code 3, and the file holds what was accepted: rows of finite numbers, ever later, each of them a
 /// converged state (the force of a shorter run that ends at the same time).
