@@ -4,6 +4,7 @@
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod bulk;
+pub mod checksum;
 pub mod cli;
 pub mod composition;
 pub mod element;

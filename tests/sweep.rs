@@ -128,6 +128,70 @@ fn every_case_is_its_scene_alone() {
     assert_eq!(changed, [0, 3]);
 }
 
+/// Cases whose steps are chosen as they go: what chooses them is part of the state at the end of the shared phases, so that
+/// each case takes the steps of its scene alone. Their tolerance is relative to the greatest penetration of all phases, so
+/// that nothing is shared before one that presses deeper.
+#[test]
+fn shared_phases_with_adaptive_steps() {
+    for (deepest, shared) in [(1e-3, 2), (1.2e-3, 0)] {
+        adaptive_cases(deepest, shared);
+    }
+}
+
+/// The last phase presses to `deepest`; so many runs of phases are shared.
+fn adaptive_cases(deepest: f64, shared: usize) {
+    let phases = format!(
+        "[[phase]]\nname = \"back\"\nvelocity = -0.05\ndistance = 0.1\napproach = {deepest:e}\ntolerance = 2e-3\n[output]"
+    );
+    let scene = SCENE.replace("steps = 10\n", "tolerance = 2e-3\n").replace("steps = 12\n", "tolerance = 1e-3\n");
+    let (directory, out) = prepare(
+        "scene = \"scene.toml\"\n[vary]\n\"phase.slide.velocity\" = [0.02, 0.1]\n\
+         \"phase.back.tolerance\" = [2e-3, 5e-4]\n",
+    );
+    let (before, _) = scene.split_once("[material]").unwrap();
+    let (_, after) = scene.split_once("[indenter]").unwrap();
+    let scene = format!("{before}{SOFT}[indenter]{}", after.replace("[output]", &phases));
+    let file = directory.path().join("scene.toml");
+    std::fs::write(&file, scene).unwrap();
+    output_of(&mut sweep(program(1), &out, &[]));
+    let mut steps = Vec::new();
+    for (case, (velocity, tolerance)) in [(0.02, 2e-3), (0.02, 5e-4), (0.1, 2e-3), (0.1, 5e-4)].iter().enumerate() {
+        let alone = directory.path().join("alone.h5");
+        let set = [format!("phase.slide.velocity={velocity}"), format!("phase.back.tolerance={tolerance:e}")];
+        let set = set.iter().flat_map(|set| ["--set", set]);
+        output_of(program(1).arg("run").arg(&file).arg("--out").arg(&alone).args(set));
+        assert_same(&alone, &out.join(format!("case-{case:04}.h5")), 0.0);
+        steps.push(Results::open(&alone).unwrap().history("time").unwrap().len());
+    }
+    steps.dedup();
+    assert!(steps.len() == 4, "the cases differ in their steps: {steps:?}");
+    let files = std::fs::read_dir(out.join(".shared")).unwrap().map(|entry| entry.unwrap().path());
+    assert_eq!(files.filter(|path| path.extension().is_some_and(|end| end == "h5")).count(), shared);
+}
+
+/// Results of a profile whose file has changed since are not those of the sweep.
+#[test]
+fn a_file_that_has_changed_makes_its_cases_anew() {
+    let (directory, out) = prepare("scene = \"scene.toml\"\n[vary]\n\"phase.slide.velocity\" = [0.01, 0.1]\n");
+    let (before, _) = SCENE.split_once("[indenter]").unwrap();
+    let (_, after) = SCENE.split_once("[contact]").unwrap();
+    let sampled = "profile = \"sampled\"\nfile = \"profile.txt\"\nextend = \"periodic\"";
+    let scene = format!("{before}[indenter]\n{sampled}\n[contact]{after}");
+    std::fs::write(directory.path().join("scene.toml"), scene).unwrap();
+    let solve = |height: f64| {
+        let line = |k: usize| format!("{:?} {:?}\n", k as f64 / 16.0, height * (k as f64 / 16.0 - 0.5).powi(2));
+        std::fs::write(directory.path().join("profile.txt"), (0..16).map(line).collect::<String>()).unwrap();
+        let told = output_of(&mut sweep(program(1), &out, &[]));
+        let force = Results::open(&out.join("case-0001.h5")).unwrap().history("normal_force").unwrap();
+        (told.contains("2 of 2 case(s) were complete before"), force[force.len() - 1])
+    };
+    let first = solve(1e-3);
+    assert_eq!(solve(1e-3), (true, first.1));
+    let changed = solve(2e-3);
+    assert!(!changed.0 && changed.1 != first.1, "{first:?} {changed:?}");
+    assert_eq!(solve(1e-3), (false, first.1));
+}
+
 /// Three ranks in groups of one and of two; one case alone; the same numbers.
 #[test]
 fn groups_of_ranks_share_the_work() {

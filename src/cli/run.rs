@@ -55,7 +55,7 @@ fn solve(
     let out = arguments.out.clone().unwrap_or_else(|| default_output(file));
     let mut origin = Origin::Rest;
     if arguments.resume {
-        let mine = if world.rank() == 0 { origin::is_complete(&out, &scene).map(u8::from) } else { Ok(0) };
+        let mine = if world.rank() == 0 { origin::is_complete(&out, &scene, file).map(u8::from) } else { Ok(0) };
         let mut complete = agree(world, mine)?;
         world.process_at_rank(0).broadcast_into(&mut complete);
         if complete != 0 {

@@ -45,7 +45,7 @@ struct View {
 impl Board {
     /// Shows the `chosen` cases of the sweep.
     pub fn start(folder: &Folder, sweep: &Sweep, chosen: &[usize], run: &str) -> Result<Self> {
-        let is_done = |case: &usize| folder.state(*case, &sweep.cases[*case].scene) == State::Complete;
+        let is_done = |case: &usize| folder.state(sweep, *case) == State::Complete;
         let steps = |cases: &[usize]| cases.iter().map(|&case| sweep.cases[case].scene.steps()).sum();
         let done: Vec<usize> = chosen.iter().copied().filter(is_done).collect();
         if !done.is_empty() {
@@ -114,7 +114,7 @@ impl View {
     }
 
     fn tell_end(&mut self, case: usize) {
-        let state = self.folder.state(case, &self.sweep.cases[case].scene);
+        let state = self.folder.state(&self.sweep, case);
         let record = self.folder.record(case).unwrap_or_default();
         let reason = if record.reason.is_empty() { String::new() } else { format!(": {}", record.reason) };
         let line = format!(

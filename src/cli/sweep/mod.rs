@@ -79,8 +79,8 @@ fn print(arguments: &SweepArguments) -> Result<()> {
         return Ok(());
     }
     let folder = Folder::at(&out);
-    for (index, case) in sweep.cases.iter().enumerate() {
-        let state = folder.state(index, &case.scene).word();
+    for index in 0..sweep.cases.len() {
+        let state = folder.state(&sweep, index).word();
         terminal::tell(format_args!("{index:4}  {state:13}  {}", sweep.label(index)));
     }
     Ok(())
@@ -139,7 +139,7 @@ const NAMED: usize = 3;
 fn tell((sweep, folder): (&Sweep, &Folder), chosen: &[usize], begun: Instant, stopped: bool) -> Result<()> {
     let (mut complete, mut failed) = (0, Vec::new());
     for &index in chosen {
-        match folder.state(index, &sweep.cases[index].scene) {
+        match folder.state(sweep, index) {
             folder::State::Complete => complete += 1,
             folder::State::Failed(record) => {
                 failed.push(format!("case {index} (exit code {}): {}", record.exit, record.reason))
