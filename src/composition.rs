@@ -30,7 +30,7 @@ use crate::solve::{
 use body::Materials;
 pub use body::{Outline, Stretch, outline};
 pub use inputs::inputs;
-pub use profile::{Finest, Shape, elevations, shape};
+pub use profile::{Finest, PressedEnd, Shape, elevations, shape};
 
 /// A scene made ready to run.
 pub struct Problem {
@@ -85,7 +85,7 @@ pub fn build_reusing(
     // First what the scene may be refused for.
     let elevations = share_numbers(comm, || elevations(scene, file))?;
     let mesh = body::mesh(comm, scene, file)?;
-    let profile = shape(scene, file, &elevations, Stretch::of(scene, &mesh.face))?.profile;
+    let profile = shape(scene, file, &elevations, Stretch::of(scene, &mesh))?.profile;
     assemble(comm, scene, (mesh, profile), compliances)
 }
 
@@ -97,7 +97,7 @@ pub fn build_with_profile(comm: &SimpleCommunicator, scene: &Scene, profile: Box
 /// As [`build`], with the bytes of the .msh file that the scene names, on every rank, instead of the file.
 pub fn build_on_mesh(comm: &SimpleCommunicator, scene: &Scene, bytes: &[u8]) -> Result<Problem> {
     let mesh = body::mesh_of(bytes, scene)?;
-    let profile = shape(scene, Path::new(""), &[], Stretch::of(scene, &mesh.face))?.profile;
+    let profile = shape(scene, Path::new(""), &[], Stretch::of(scene, &mesh))?.profile;
     assemble(comm, scene, (mesh, profile), &Compliances::default())
 }
 
@@ -189,7 +189,8 @@ fn following(
         Some(series) => Some(Relaxation { arms: Arms::new(times, memory, &u)?, series }),
         None => None,
     };
-    let interior = Interior::new(comm, solid);
+    let column = periodic_column(scene, &solid);
+    let interior = Interior::new(comm, solid, column);
     let backing = Following { compliance, softness, relaxation, interior, secant: 1.0, account: None };
     condensed(comm, scene, mesh, u, (interface, backing))
 }

@@ -136,6 +136,15 @@ fn frictionless_elastic() {
     assert_same_on_ranks(elastic);
 }
 
+/// The face is solved by one rank; the interior is recovered by all, by waves where it is a periodic layer and by a sparse
+/// factorisation where it is not.
+#[test]
+fn condensed_recovers_the_interior_on_all_ranks() {
+    let condensed = || sliding().set("solver.strategy=\"condensed\"");
+    assert_same_on_ranks(condensed);
+    assert_same_on_ranks(|| condensed().set("layer.sides=\"free\""));
+}
+
 /// More ranks than columns of cells: some may own little or nothing.
 #[test]
 fn more_ranks_than_the_mesh_is_worth() {

@@ -108,7 +108,7 @@ impl Observer for Told {
 /// Runs a problem over its phases.
 fn run(world: &SimpleCommunicator, scene: &Scene, problem: Problem) -> Result<Told> {
     let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, .. } = problem;
-    // On several ranks the condensed form leaves the interior to MUMPS when it is asked for, after the solve.
+    // On several ranks the condensed form parts the body among them when it is first asked for, not always alike.
     let face_only = scene.solver.strategy == Strategy::Condensed && world.size() > 1;
     let mut told = Told { face_only, ..Told::default() };
     let mut driver = Driver::new(strategy.as_mut(), &mut told, &phases);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::composition::{Finest, Shape, Stretch};
+use crate::composition::{Finest, PressedEnd, Shape, Stretch};
 use crate::scene::{Indenter, Scene};
 
 /// A few lines about the profile over the face, with a sketch, and warnings of what a run would miss.
@@ -76,6 +76,12 @@ fn warnings(scene: &Scene, shape: &Shape, face: Stretch) -> Vec<String> {
     let deepest = scene.deepest();
     if deepest <= low {
         list.push(format!("the indenter never touches the face where it starts: its approach ends at {deepest:.3e} m"));
+    }
+    if let Some(PressedEnd { x, time }) = shape.pressed {
+        list.push(format!(
+            "from t = {time:.4e} s the indenter presses on the clamped end of the face at x = {x:?} m, which cannot give \
+             way: N grows with the penalty there"
+        ));
     }
     list
 }

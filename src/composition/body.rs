@@ -9,7 +9,7 @@ use crate::bulk::{Bulk, Part, Series};
 use crate::element::Quadrilateral;
 use crate::error::{Error, Result};
 use crate::mesh::gmsh::{self, Flaw, Role, Roles};
-use crate::mesh::{Cell, Face, Layer, Mesh, Sides};
+use crate::mesh::{Cell, Layer, Mesh, Sides};
 use crate::parallel::agree;
 use crate::petsc::Vector;
 use crate::rheology::Memory;
@@ -55,6 +55,8 @@ pub struct Stretch {
     pub edges: usize,
     /// Whether its ends are the same node.
     pub periodic: bool,
+    /// How far each end is below the highest node, m, where it is clamped; none where it can move.
+    pub clamped: [Option<f64>; 2],
 }
 
 /// What the body of the scene at `file` is; a .msh file is read by this process.
@@ -71,25 +73,32 @@ pub fn outline(scene: &Scene, file: &Path) -> Result<Outline> {
             let triangles = mesh.cells.iter().filter(|cell| matches!(cell, Cell::Triangle(_))).count();
             let cells = [mesh.cells.len() - triangles, triangles];
             let penalty = scene.contact.penalty.stiffness().is_none().then(|| penalty(scene, &mesh));
-            Ok(Outline { face: Stretch::of(scene, &mesh.face), unknowns: mesh.free_components(), cells, penalty })
+            Ok(Outline { face: Stretch::of(scene, &mesh), unknowns: mesh.free_components(), cells, penalty })
         }
     }
 }
 
 impl Stretch {
     /// The face of the scene's mesh.
-    pub fn of(scene: &Scene, face: &Face) -> Self {
+    pub fn of(scene: &Scene, mesh: &Mesh) -> Self {
+        let face = &mesh.face;
+        let (edges, periodic) = (face.edges.len(), false);
         match (scene.layer(), face.x.as_slice()) {
             (Some(layer), _) => Self::of_layer(layer),
-            (None, [from, .., to]) => Self { from: *from, to: *to, edges: face.edges.len(), periodic: false },
+            (None, [from, .., to]) => {
+                let clamped = [0, face.x.len() - 1]
+                    .map(|end| (mesh.held[face.unknown[end] as usize] == [true; 2]).then_some(face.recess[end]));
+                Self { from: *from, to: *to, edges, periodic, clamped }
+            }
             // No mesh has a face without an edge.
-            (None, _) => Self { from: 0.0, to: 0.0, edges: 0, periodic: false },
+            (None, _) => Self { from: 0.0, to: 0.0, edges, periodic, clamped: [None; 2] },
         }
     }
 
     fn of_layer(layer: &scene::Layer) -> Self {
         let periodic = layer.sides == scene::Sides::Periodic;
-        Self { from: 0.0, to: layer.width, edges: layer.cells[0], periodic }
+        let clamped = [(layer.sides == scene::Sides::Fixed).then_some(0.0); 2];
+        Self { from: 0.0, to: layer.width, edges: layer.cells[0], periodic, clamped }
     }
 
     /// m

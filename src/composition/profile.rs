@@ -5,6 +5,7 @@ use std::path::Path;
 use super::{Stretch, phases};
 use crate::error::{Error, Result};
 use crate::expression::Expression;
+use crate::loading::{Phase, Placement};
 use crate::profile::{
     Circle, Formula, Harmonic, Parabola, Point, Profile, Repeated, Rms, Rough, Roughness, Sampled, Survey, Wedge,
     profilometer,
@@ -21,6 +22,17 @@ pub struct Shape {
     pub detail: Option<String>,
     /// The profile over the face before it slides.
     pub survey: Survey,
+    /// Where the indenter first presses on what cannot give way.
+    pub pressed: Option<PressedEnd>,
+}
+
+/// A clamped end of the face under the indenter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PressedEnd {
+    /// m
+    pub x: f64,
+    /// The end of the first step in which it is, s.
+    pub time: f64,
 }
 
 /// The finest detail of a profile.
@@ -57,7 +69,8 @@ pub(super) fn bytes(name: &str, file: &Path) -> Result<Vec<u8>> {
 /// profile repeats with the layer's period.
 ///
 /// # Errors
-/// [`Error::Scene`] when the profile is not known everywhere that the loading history takes the face.
+/// [`Error::Scene`] when the profile is not known everywhere that the loading history takes the face, or presses on a
+/// clamped end of it where no penetration is to be left.
 pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], face: Stretch) -> Result<Shape> {
     let repeat = |profile: Box<dyn Profile>, centre: f64| match face.periodic {
         true => Box::new(Repeated { profile, centre, period: face.width() }),
@@ -102,7 +115,38 @@ pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], face: Stretch) -> R
         }
     };
     let survey = survey(&*profile, face).map_err(|error| wrong("profile", error.to_string()))?;
-    Ok(Shape { profile, finest, detail, survey })
+    let pressed = pressed_end(&*profile, scene, face);
+    if let (Some(PressedEnd { x, time }), scene::Method::Augmented { .. }) = (pressed, &scene.contact.method) {
+        let reason = format!(
+            "is contact without penetration, but from t = {time:.4e} s the indenter presses on the clamped end of the \
+             face at x = {x:?} m, which cannot give way; keep it off the ends, or say \"penalty\""
+        );
+        return Err(Error::scene(file, "contact.method", reason));
+    }
+    Ok(Shape { profile, finest, detail, survey, pressed })
+}
+
+/// Where and when the indenter first presses on a clamped end of the face, as far as planned steps can tell.
+fn pressed_end(profile: &dyn Profile, scene: &Scene, face: Stretch) -> Option<PressedEnd> {
+    /// Of an adaptive phase, whose steps are not planned.
+    const MOMENTS: u32 = 64;
+    let ends: Vec<(f64, f64)> =
+        [face.from, face.to].into_iter().zip(face.clamped).filter_map(|(x, clamped)| Some((x, clamped?))).collect();
+    if ends.is_empty() {
+        return None;
+    }
+    let pressed = |phase: &Phase, time: f64| {
+        let Placement { approach, sliding, .. } = phase.placement(time, 0.0);
+        let presses = |&&(x, recess): &&(f64, f64)| profile.at(x - sliding).is_ok_and(|h| h.height + recess < approach);
+        ends.iter().find(presses).map(|&(x, _)| PressedEnd { x, time })
+    };
+    phases(scene, 0.0).iter().find_map(|phase| match phase.adaptive {
+        Some(_) => {
+            let times = (1..=MOMENTS).map(|i| phase.start + phase.duration * f64::from(i) / f64::from(MOMENTS));
+            times.into_iter().find_map(|time| pressed(phase, time))
+        }
+        None => phase.steps.iter().find_map(|step| pressed(phase, step.time)),
+    })
 }
 
 /// Points on every cell of the face for what is checked or measured by sampling, and the most of them.

@@ -5,6 +5,7 @@ use mpi::traits::Communicator;
 
 use super::super::BulkFields;
 use super::super::body::{Body, Solid};
+use super::layered::{Below, PeriodicColumn};
 use crate::error::Result;
 use crate::petsc::{Cholesky, Matrix, Vector};
 
@@ -12,68 +13,89 @@ use crate::petsc::{Cholesky, Matrix, Vector};
 pub struct Interior {
     comm: SimpleCommunicator,
     solid: Solid,
+    /// Of a periodic layer.
+    column: Option<PeriodicColumn>,
     /// Made when first asked for: most scenes never do.
-    recovery: Option<Recovery>,
+    recovery: Option<(Body, Extension)>,
+}
+
+/// H.
+enum Extension {
+    /// By wavenumber.
+    Waves(Below),
+    /// Of any body.
+    Sparse(Inner),
 }
 
 /// K u_I = -K_IG u_G, factorised and distributed.
-struct Recovery {
-    body: Body,
+struct Inner {
     stiffness: Matrix,
     factor: Cholesky,
     /// Per component of the face, its local row where this rank owns it.
     rows: Vec<Option<usize>>,
+    /// What stands on the diagonal of the held rows.
+    diagonal: f64,
 }
 
 impl Interior {
-    /// The interior of a solid; costs nothing until [`Self::fields`].
-    pub fn new(comm: &SimpleCommunicator, solid: Solid) -> Self {
-        Self { comm: comm.duplicate(), solid, recovery: None }
+    /// The interior of a solid, with its column where that is a periodic layer; costs nothing until [`Self::fields`].
+    pub fn new(comm: &SimpleCommunicator, solid: Solid, column: Option<PeriodicColumn>) -> Self {
+        Self { comm: comm.duplicate(), solid, column, recovery: None }
     }
 
     /// The fields of the body for given displacements and effective displacements (mu_0 u + sum mu_i z_i; none = the
     /// displacements) of the face: x, z of each node, m, the same on all ranks.
     pub fn fields(&mut self, displacement: &[f64], effective: Option<&[f64]>) -> Result<BulkFields> {
-        let recovery = match &mut self.recovery {
-            Some(recovery) => recovery,
-            place => place.insert(Recovery::new(&self.comm, &self.solid)?),
-        };
-        let u = recovery.extend(displacement, self.solid.diagonal())?;
+        if self.recovery.is_none() {
+            let body = Body::new(self.comm.duplicate(), self.solid.clone())?;
+            let extension = match &self.column {
+                Some(column) => Extension::Waves(Below::new(column)?),
+                None => Extension::Sparse(Inner::new(&body)?),
+            };
+            self.recovery = Some((body, extension));
+        }
+        let Some((body, extension)) = &mut self.recovery else { return Ok(BulkFields::default()) };
+        let u = extension.extend(displacement, body)?;
         let around = match effective {
-            Some(effective) => {
-                let y = recovery.extend(effective, self.solid.diagonal())?;
-                recovery.body.around(&y)?
-            }
-            None => recovery.body.around(&u)?,
+            Some(effective) => body.around(&extension.extend(effective, body)?)?,
+            None => body.around(&u)?,
         };
-        recovery.body.fields(&u, &[around])
+        body.fields(&u, &[around])
     }
 }
 
-impl Recovery {
-    fn new(comm: &SimpleCommunicator, solid: &Solid) -> Result<Self> {
-        let body = Body::new(comm.duplicate(), solid.clone())?;
-        let stiffness = body.elastic()?;
+impl Extension {
+    /// The displacements of the whole body, m.
+    fn extend(&self, face: &[f64], body: &Body) -> Result<Vector> {
+        match self {
+            Self::Waves(below) => below.extend(face, body),
+            Self::Sparse(inner) => inner.extend(face, body),
+        }
+    }
+}
+
+impl Inner {
+    fn new(body: &Body) -> Result<Self> {
+        let (stiffness, diagonal) = (body.elastic()?, body.solid().diagonal());
         let numbering = body.numbering();
-        let components = solid.mesh.face.unknown.iter().flat_map(|&unknown| [(unknown, 0), (unknown, 1)]);
+        let components = body.mesh().face.unknown.iter().flat_map(|&unknown| [(unknown, 0), (unknown, 1)]);
         let rows: Vec<Option<usize>> =
             components.map(|(unknown, i)| numbering.local(unknown).map(|node| 2 * node + i)).collect();
         let first = 2 * numbering.owned.start;
         let owned: Vec<i32> = rows.iter().flatten().map(|row| (first + row) as i32).collect();
         let mut inner = stiffness.duplicate()?;
-        inner.fix(&owned, solid.diagonal())?;
+        inner.fix(&owned, diagonal)?;
         inner.declare_positive_definite()?;
         let factor = Cholesky::new(&inner)?;
-        Ok(Self { body, stiffness, factor, rows })
+        Ok(Self { stiffness, factor, rows, diagonal })
     }
 
-    /// The displacements of the whole body, m; `diagonal` is what stands on the diagonal of the held rows.
-    fn extend(&self, face: &[f64], diagonal: f64) -> Result<Vector> {
-        let (mut values, mut right) = (self.body.vector()?, self.body.vector()?);
+    fn extend(&self, face: &[f64], body: &Body) -> Result<Vector> {
+        let (mut values, mut right) = (body.vector()?, body.vector()?);
         self.put(face, &mut values)?;
         self.stiffness.multiply(&values, &mut right)?;
         right.scale(-1.0)?;
-        self.put(&face.iter().map(|value| diagonal * value).collect::<Vec<_>>(), &mut right)?;
+        self.put(&face.iter().map(|value| self.diagonal * value).collect::<Vec<_>>(), &mut right)?;
         self.factor.solve(&right, &mut values)?;
         Ok(values)
     }

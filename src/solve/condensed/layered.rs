@@ -46,10 +46,52 @@ impl PeriodicColumn {
         Operator::new(&self.cells.iter().map(with).collect::<Vec<_>>(), self.columns)
     }
 
+    /// At the instantaneous moduli, of a bulk of one part.
+    fn elimination(&self) -> Result<Elimination> {
+        Elimination::new(&self.operator(&[1.0]))
+    }
+
     /// The compliance of the face at the instantaneous moduli, of a bulk of one part.
     pub fn compliance(&self) -> Result<Compliance> {
-        Compliance::of_periodic_layer(&Elimination::new(&self.operator(&[1.0]))?, self.columns)
+        Compliance::of_periodic_layer(&self.elimination()?, self.columns)
     }
+}
+
+/// An unloaded periodic layer below its face, of a bulk of one part.
+pub struct Below {
+    elimination: Elimination,
+    transform: Transform,
+}
+
+impl Below {
+    /// The layer of these columns.
+    pub fn new(column: &PeriodicColumn) -> Result<Self> {
+        Ok(Self { elimination: column.elimination()?, transform: Transform::new(column.columns) })
+    }
+
+    /// The displacements of the layer on this rank, for x, z of each face node.
+    pub fn extend(&self, face: &[f64], body: &Body) -> Result<Vector> {
+        vector(&self.elimination.below(&self.transform.forward(face)?), &self.transform, body)
+    }
+}
+
+/// Waves as a vector of the body, of which each rank takes its own part.
+fn vector(waves: &[Wave], transform: &Transform, body: &Body) -> Result<Vector> {
+    let rows = waves.len() / transform.waves();
+    let numbering = body.numbering();
+    let mut vector = body.vector()?;
+    let mut values = vector.view_mut()?;
+    for row in 0..rows {
+        let of_row = transform.inverse(waves.iter().skip(row).step_by(rows))?;
+        for (column, pair) in of_row.chunks_exact(2).enumerate() {
+            // Nodes run column by column, downward in each, with the clamped one last.
+            if let Some(local) = numbering.local((column * (rows + 1) + row) as u32) {
+                values[2 * local..2 * local + 2].copy_from_slice(pair);
+            }
+        }
+    }
+    drop(values);
+    Ok(vector)
 }
 
 /// How the parts of a body relax.
@@ -157,22 +199,6 @@ impl Layered {
             self.work.iter_mut().zip(elongation).for_each(|(work, z)| *work += z * weight);
         }
     }
-
-    /// The waves `work` as a vector of the body.
-    fn vector(&self, body: &Body) -> Result<Vector> {
-        let mut vector = body.vector()?;
-        let mut values = vector.view_mut()?;
-        for row in 0..self.rows {
-            let of_row = self.transform.inverse(self.work.iter().skip(row).step_by(self.rows))?;
-            for (column, pair) in of_row.chunks_exact(2).enumerate() {
-                // Nodes run column by column, downward in each, with the clamped one last.
-                let node = body.numbering().global[column * (self.rows + 1) + row] as usize;
-                values[2 * node..2 * node + 2].copy_from_slice(pair);
-            }
-        }
-        drop(values);
-        Ok(vector)
-    }
 }
 
 impl Inside for Layered {
@@ -270,14 +296,14 @@ impl Inside for Layered {
             None => Body::new(SimpleCommunicator::self_comm(), self.solid.clone())?,
         };
         self.combine(1.0, std::iter::empty());
-        let u = self.vector(&body)?;
+        let u = vector(&self.work, &self.transform, &body)?;
         let mut effective = Vec::new();
         for series in self.relaxations.series.clone() {
             match series {
                 Some(series) => self.combine(series.long_term, series.weights.into_iter()),
                 None => self.combine(1.0, std::iter::empty()),
             }
-            effective.push(body.around(&self.vector(&body)?)?);
+            effective.push(body.around(&vector(&self.work, &self.transform, &body)?)?);
         }
         let fields = body.fields(&u, &effective);
         self.body = Some(body);

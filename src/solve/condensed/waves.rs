@@ -141,8 +141,21 @@ impl Elimination {
 
     /// From s to w, in place.
     pub fn complete(&self, swept: &mut [Wave]) {
+        swept.iter_mut().step_by(self.rows).zip(self.face()).for_each(|(w, inverse)| *w = inverse * *w);
+        self.descend(swept);
+    }
+
+    /// w of a layer without load whose face is at w_0.
+    pub fn below(&self, face: &[Wave]) -> Vec<Wave> {
+        let mut w = vec![Wave::zeros(); self.pivots.len()];
+        w.iter_mut().step_by(self.rows).zip(face).for_each(|(w, face)| *w = *face);
+        self.descend(&mut w);
+        w
+    }
+
+    /// From s to w below w_0, in place.
+    fn descend(&self, swept: &mut [Wave]) {
         for (pivots, w) in self.pivots.chunks_exact(self.rows).zip(swept.chunks_exact_mut(self.rows)) {
-            w[0] = pivots[0].inverse * w[0];
             for j in 1..self.rows {
                 w[j] = pivots[j].inverse * (w[j] - pivots[j - 1].coupling.tr_mul(&w[j - 1]));
             }
@@ -185,9 +198,14 @@ impl Transform {
         Self { columns, forward: planner.plan_fft_forward(columns), inverse: planner.plan_fft_inverse(columns) }
     }
 
+    /// How many wavenumbers there are.
+    pub fn waves(&self) -> usize {
+        self.columns / 2 + 1
+    }
+
     /// The waves of x, z of each node.
     pub fn forward(&self, values: &[f64]) -> Result<Vec<Wave>> {
-        let mut waves = vec![Wave::zeros(); self.columns / 2 + 1];
+        let mut waves = vec![Wave::zeros(); self.waves()];
         let (mut row, mut spectrum) = (self.forward.make_input_vec(), self.forward.make_output_vec());
         for component in 0..2 {
             row.iter_mut().zip(values.iter().skip(component).step_by(2)).for_each(|(row, value)| *row = *value);
