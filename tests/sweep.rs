@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use common::program::{assert_same, ends_with, output_of, program};
+use common::program::{assert_same, ends_with, names, output_of, program};
 use mpjr::output::reader::Results;
 
 const SCENE: &str = r#"
@@ -79,6 +79,11 @@ fn summary(out: &Path) -> Vec<Vec<String>> {
     text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect()
 }
 
+/// How many results of phases that cases share there are.
+fn shared_runs(out: &Path) -> usize {
+    names(&out.join(".shared")).iter().filter(|name| name.ends_with(".h5")).count()
+}
+
 /// Each case is the run of its scene alone, the shared approach is solved once, and nothing is solved twice.
 #[test]
 fn every_case_is_its_scene_alone() {
@@ -92,9 +97,7 @@ fn every_case_is_its_scene_alone() {
     assert!(!out.exists());
 
     assert!(output_of(&mut sweep(program(1), &out, &[])).contains("6 of 6 case(s) complete, 0 failed"));
-    let shared = std::fs::read_dir(out.join(".shared")).unwrap().map(|entry| entry.unwrap().path());
-    let shared: Vec<PathBuf> = shared.filter(|path| path.extension().is_some_and(|end| end == "h5")).collect();
-    assert_eq!(shared.len(), 2);
+    assert_eq!(shared_runs(&out), 2);
     for (case, material, velocity) in [(1, "soft", "0.1"), (5, "hard", "1")] {
         let alone = directory.path().join(format!("alone-{case}.h5"));
         let table = std::fs::read_to_string(directory.path().join(format!("{material}.toml"))).unwrap();
@@ -165,8 +168,7 @@ fn adaptive_cases(deepest: f64, shared: usize) {
     }
     steps.dedup();
     assert!(steps.len() == 4, "the cases differ in their steps: {steps:?}");
-    let files = std::fs::read_dir(out.join(".shared")).unwrap().map(|entry| entry.unwrap().path());
-    assert_eq!(files.filter(|path| path.extension().is_some_and(|end| end == "h5")).count(), shared);
+    assert_eq!(shared_runs(&out), shared);
 }
 
 /// Results of a profile whose file has changed since are not those of the sweep.

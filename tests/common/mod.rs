@@ -4,6 +4,7 @@ pub mod mpi;
 pub mod msh;
 pub mod program;
 pub mod sample;
+pub mod smallest;
 
 use std::path::{Path, PathBuf};
 
