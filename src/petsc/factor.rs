@@ -3,8 +3,8 @@
 use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 
-use mpi::topology::AsCommunicator;
-use mpi::traits::AsRaw;
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::{AsRaw, Communicator};
 
 use super::error::check;
 use super::ffi;
@@ -31,25 +31,33 @@ impl Cholesky {
         check(unsafe { ffi::MatSolve(self.raw, b.raw(), x.raw()) })
     }
 
-    /// Gives matrix^-1 e for unit vectors e, with their index: `rows` has the row of each, and whether this rank owns
-    /// it. All at once. Collective.
-    pub fn solve_units(
-        &self,
-        comm: &impl AsCommunicator,
-        rows: &[(i32, bool)],
-        mut take: impl FnMut(usize, &Vector) -> Result<()>,
-    ) -> Result<()> {
-        let mut local = 0;
-        // SAFETY: a live matrix and a place for the number; rows and columns are distributed alike.
-        unsafe { check(ffi::MatGetLocalSize(self.raw, &mut local, null_mut()))? };
-        let (mut right, solution) = (Dense::new(comm, local, rows.len())?, Dense::new(comm, local, rows.len())?);
-        for (column, &(row, _)) in rows.iter().enumerate().filter(|(_, (_, owned))| *owned) {
-            right.insert(row, column as i32, 1.0)?;
+    /// The entries of matrix^-1 in the given rows (ascending) and columns, column after column; on the first rank,
+    /// empty on the others. MUMPS touches only the fronts that these depend on, which for the nodes of one line is a
+    /// small share of a solve. Collective.
+    pub fn inverse_entries(&self, comm: &SimpleCommunicator, rows: &[i32], columns: &[i32]) -> Result<Vec<f64>> {
+        /// Controls of MUMPS: whether entries of the inverse are asked for, and whether solutions are distributed.
+        const INVERSE_ENTRIES: ffi::PetscInt = 30;
+        const DISTRIBUTED: ffi::PetscInt = 21;
+        let wanted = Wanted::new(comm, self.order()?, rows, columns)?;
+        let mut distributed = 0;
+        // SAFETY: a factorised matrix and the transpose of one that the first rank holds whole. The first control stays
+        // set and the second is cleared, either of which spoils later solves.
+        unsafe {
+            check(ffi::MatMumpsGetIcntl(self.raw, DISTRIBUTED, &mut distributed))?;
+            let code = ffi::MatMumpsGetInverse(self.raw, wanted.transpose);
+            check(ffi::MatMumpsSetIcntl(self.raw, INVERSE_ENTRIES, 0))?;
+            check(ffi::MatMumpsSetIcntl(self.raw, DISTRIBUTED, distributed))?;
+            check(code)?;
         }
-        right.assemble()?;
-        // SAFETY: a factorised matrix and two distinct matrices of as many rows.
-        check(unsafe { ffi::MatMatSolve(self.raw, right.raw, solution.raw) })?;
-        (0..rows.len()).try_for_each(|column| solution.with_column(column as i32, |vector| take(column, vector)))
+        if comm.rank() == 0 { wanted.values(rows, columns) } else { Ok(Vec::new()) }
+    }
+
+    /// How many rows it has.
+    fn order(&self) -> Result<i32> {
+        let mut order = 0;
+        // SAFETY: a live matrix and a place for the number.
+        unsafe { check(ffi::MatGetSize(self.raw, &mut order, null_mut()))? };
+        Ok(order)
     }
 
     /// The factorisation, and the rows and columns `kept` of matrix^-1, column-major: the inverse of the Schur
@@ -101,56 +109,58 @@ impl Cholesky {
     }
 }
 
-/// A dense matrix whose rows are distributed like a vector.
-struct Dense {
+/// The places of the entries of an inverse that are asked for: a square matrix of that pattern, all on the first rank,
+/// and its transpose as MUMPS wants it.
+struct Wanted {
     raw: ffi::Mat,
+    transpose: ffi::Mat,
 }
 
-impl Dense {
-    /// Zeros, with `local` rows on this rank.
-    fn new(comm: &impl AsCommunicator, local: ffi::PetscInt, columns: usize) -> Result<Self> {
-        let (mut raw, columns) = (null_mut(), columns as ffi::PetscInt);
-        // SAFETY: a live communicator and a place for the handle; PETSc allocates and clears the values.
-        unsafe {
-            let comm = comm.as_communicator().as_raw();
-            check(ffi::MatCreateDense(comm, local, -1, -1, columns, null_mut(), &mut raw))?;
+impl Wanted {
+    fn new(comm: &SimpleCommunicator, order: i32, rows: &[i32], columns: &[i32]) -> Result<Self> {
+        let local = if comm.rank() == 0 { order } else { 0 };
+        let mut starts = vec![0; local as usize + 1];
+        let mut places = Vec::new();
+        if local > 0 {
+            columns.iter().for_each(|&column| starts[column as usize + 1] = rows.len() as i32);
+            for i in 1..starts.len() {
+                starts[i] += starts[i - 1];
+            }
+            places = rows.repeat(columns.len());
         }
-        let mut matrix = Self { raw };
-        matrix.assemble()?;
-        Ok(matrix)
+        let zeros = vec![0.0; places.len()];
+        let mut wanted = Self { raw: null_mut(), transpose: null_mut() };
+        // SAFETY: a live communicator and places for the handles; PETSc copies the rows of this rank, and of the two
+        // layouts takes the one that the matrix has.
+        unsafe {
+            check(ffi::MatCreate(comm.as_raw(), &mut wanted.raw))?;
+            check(ffi::MatSetSizes(wanted.raw, local, local, order, order))?;
+            check(ffi::MatSetType(wanted.raw, c"aij".as_ptr()))?;
+            let (i, j, v) = (starts.as_ptr(), places.as_ptr(), zeros.as_ptr());
+            check(ffi::MatSeqAIJSetPreallocationCSR(wanted.raw, i, j, v))?;
+            check(ffi::MatMPIAIJSetPreallocationCSR(wanted.raw, i, j, v))?;
+            check(ffi::MatCreateTranspose(wanted.raw, &mut wanted.transpose))?;
+        }
+        Ok(wanted)
     }
 
-    /// Not collective; [`Self::assemble`] afterwards.
-    fn insert(&mut self, row: i32, column: i32, value: f64) -> Result<()> {
-        // SAFETY: one row, one column, one value.
-        check(unsafe { ffi::MatSetValues(self.raw, 1, &row, 1, &column, &value, ffi::InsertMode_INSERT_VALUES) })
-    }
-
-    fn assemble(&mut self) -> Result<()> {
-        // SAFETY: a live matrix.
-        unsafe {
-            check(ffi::MatAssemblyBegin(self.raw, ffi::MatAssemblyType_MAT_FINAL_ASSEMBLY))?;
-            check(ffi::MatAssemblyEnd(self.raw, ffi::MatAssemblyType_MAT_FINAL_ASSEMBLY))
-        }
-    }
-
-    /// Lends a column.
-    fn with_column(&self, column: i32, look: impl FnOnce(&Vector) -> Result<()>) -> Result<()> {
-        let mut vector = null_mut();
-        // SAFETY: the column is lent until it is given back, which happens whatever `look` returns.
-        unsafe {
-            check(ffi::MatDenseGetColumnVecRead(self.raw, column, &mut vector))?;
-            let outcome = look(&Vector::borrow(vector));
-            check(ffi::MatDenseRestoreColumnVecRead(self.raw, column, &mut vector))?;
-            outcome
-        }
+    /// On the first rank.
+    fn values(&self, rows: &[i32], columns: &[i32]) -> Result<Vec<f64>> {
+        let mut values = vec![0.0; rows.len() * columns.len()];
+        let (m, n) = (columns.len() as ffi::PetscInt, rows.len() as ffi::PetscInt);
+        // SAFETY: m rows and n columns of this rank, and room for their values, row by row.
+        check(unsafe { ffi::MatGetValues(self.raw, m, columns.as_ptr(), n, rows.as_ptr(), values.as_mut_ptr()) })?;
+        Ok(values)
     }
 }
 
-impl Drop for Dense {
+impl Drop for Wanted {
     fn drop(&mut self) {
-        // SAFETY: this handle owns the matrix.
-        unsafe { ffi::MatDestroy(&mut self.raw) };
+        // SAFETY: this handle owns both, or they are null.
+        unsafe {
+            ffi::MatDestroy(&mut self.transpose);
+            ffi::MatDestroy(&mut self.raw);
+        }
     }
 }
 

@@ -189,7 +189,7 @@ impl Integrator {
             check(ffi::KSPGetPC(ksp, &mut pc))?;
             let (method, reduction) = match settings.linear {
                 // The preconditioner is nearly exact, so that this is one iteration, or two.
-                Linear::Preconditioned => (c"fgmres", 1e-12),
+                Linear::Preconditioned => (c"fgmres", 1e-10),
                 Linear::Own => (c"preonly", 1e-9),
                 Linear::OwnIterative => (c"gmres", 1e-9),
             };

@@ -12,7 +12,7 @@
 //! Krylov method around it. Nothing here depends on earlier steps, to the last digit.
 
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::Communicator;
+use mpi::traits::{Communicator, Root};
 
 use super::condensed::{Compliance, Factor, SparseColumns};
 use super::face::ContactFace;
@@ -28,6 +28,8 @@ pub struct Woodbury {
     comm: SimpleCommunicator,
     /// Per component of the face, its global row, and its local one where this rank owns it.
     rows: Vec<(i32, Option<usize>)>,
+    /// The components of the face in the order of their global rows.
+    ascending: Vec<usize>,
     base: Option<Base>,
     /// The contact at the last tangent; none = not factorised since.
     contact: Option<Factor>,
@@ -51,7 +53,10 @@ struct Base {
 impl Woodbury {
     /// Costs nothing until the first solve.
     pub fn new(comm: &SimpleCommunicator, rows: Vec<(i32, Option<usize>)>, layout: &Vector) -> Result<Self> {
-        Ok(Self { comm: comm.duplicate(), rows, base: None, contact: None, work: layout.like()?, done: [0; 2] })
+        let mut ascending: Vec<usize> = (0..rows.len()).collect();
+        ascending.sort_unstable_by_key(|&place| rows[place].0);
+        let work = layout.like()?;
+        Ok(Self { comm: comm.duplicate(), rows, ascending, base: None, contact: None, work, done: [0; 2] })
     }
 
     /// To be called when the contact's tangent has changed.
@@ -117,9 +122,10 @@ impl Woodbury {
     }
 
     /// Makes `contact` hold for the face's tangent.
-    fn update(&mut self, face: &mut ContactFace) -> Result<()> {
+    fn update(&mut self, face: &ContactFace) -> Result<()> {
         let Some(base) = &mut self.base else { return Ok(()) };
         let columns = SparseColumns::new(&face.tangent, &face.interface().face().edges, 0.0);
+        let all: Vec<i32> = self.ascending.iter().map(|&place| self.rows[place].0).collect();
         // In whole blocks, always the same ones: then a column has the same digits whatever came before it.
         let order = base.known.len();
         for first in (0..order).step_by(BLOCK) {
@@ -127,13 +133,14 @@ impl Woodbury {
             if !columns.rows().any(|row| block.contains(&row) && !base.known[row]) {
                 continue;
             }
-            let rows: Vec<(i32, bool)> =
-                self.rows[block.clone()].iter().map(|(row, own)| (*row, own.is_some())).collect();
-            base.factor.solve_units(&self.comm, &rows, |index, column| {
-                base.known[first + index] = true;
-                base.compliance.set_column(first + index, &face.gather(column)?);
-                Ok(())
-            })?;
+            let columns: Vec<i32> = block.clone().map(|place| self.rows[place].0).collect();
+            let mut entries = base.factor.inverse_entries(&self.comm, &all, &columns)?;
+            entries.resize(order * block.len(), 0.0);
+            self.comm.process_at_rank(0).broadcast_into(&mut entries[..]);
+            for (column, entries) in block.clone().zip(entries.chunks_exact(order)) {
+                base.compliance.set_column(column, &self.ascending, entries);
+                base.known[column] = true;
+            }
             self.done[1] += block.len();
         }
         self.contact = Some(Factor::new(&base.compliance, columns, base.scale)?);

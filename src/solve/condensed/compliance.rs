@@ -69,10 +69,11 @@ impl Compliance {
         Self { order, form: Form::Dense(vec![0.0; order * order]) }
     }
 
-    /// Makes a column known: the displacements of the face under a unit force.
-    pub fn set_column(&mut self, column: usize, values: &[f64]) {
+    /// Makes a column known: the displacements at `places` of the face under a unit force.
+    pub fn set_column(&mut self, column: usize, places: &[usize], values: &[f64]) {
         if let Form::Dense(all) = &mut self.form {
-            all[column * self.order..][..self.order].copy_from_slice(values);
+            let target = &mut all[column * self.order..][..self.order];
+            places.iter().zip(values).for_each(|(&place, value)| target[place] = *value);
         }
     }
 
