@@ -1,6 +1,7 @@
 //! The composition root: the one place that matches on what a scene asks for and builds the parts for it.
 
 mod body;
+mod inputs;
 mod profile;
 
 use std::cell::RefCell;
@@ -28,6 +29,7 @@ use crate::solve::{
 
 use body::Materials;
 pub use body::{Outline, Stretch, outline};
+pub use inputs::inputs;
 pub use profile::{Finest, PressedEnd, Shape, elevations, shape};
 
 /// A scene made ready to run.
@@ -290,7 +292,7 @@ fn clearance(scene: &Scene, interface: &mut Interface) -> Result<f64> {
 /// The phases end to end, each from where the one before left the indenter; a step ends at every moment that bulk
 /// output asks for. The indenter touches after an approach by `clearance`, m.
 pub fn phases(scene: &Scene, clearance: f64) -> Vec<Phase> {
-    let deepest = scene.phases.iter().filter_map(|phase| phase.approach).fold(0.0, f64::max) - clearance;
+    let deepest = scene.deepest() - clearance;
     // What never touches, or just so, is given its way of getting there.
     let scale = if deepest > 0.0 { deepest } else { clearance.abs().max(1e-200) };
     let mut rates = [0.0, 0.0];

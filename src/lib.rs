@@ -1,6 +1,10 @@
 //! Parallel transient viscoelastic contact with friction, by interface finite elements with embedded profiles (MPJR).
 
+// All that is printed goes through cli::terminal, which survives a reader that goes away.
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
 pub mod bulk;
+pub mod checksum;
 pub mod cli;
 pub mod composition;
 pub mod element;

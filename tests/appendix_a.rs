@@ -48,12 +48,12 @@ fn apart(scene: &str, poisson: f64) -> Apart {
     found
 }
 
-/// nu = 0.49 with B-bar: N_z within 1 % and Q_x within 2 % of f N_z over the whole cycle (found: 0.60 %, 0.61 %; twice as
+/// nu = 0.49 with B-bar: N_z within 1 % and Q_x within 1 % of f N_z over the whole cycle (found: 0.60 %, 0.50 %; twice as
 /// many cells each way leave 0.17 % of the former). Nearly uncoupled: N_z does not notice the motion.
 #[test]
 fn nearly_incompressible_meets_the_closed_forms() {
     let found = apart(include_str!("../runs/appendix-a-bbar.toml"), 0.49);
-    assert!(found.normal.abs() < 0.01 && found.tangential < 0.02 && found.drift < 1e-3, "{found:?}");
+    assert!(found.normal.abs() < 0.01 && found.tangential < 0.01 && found.drift < 1e-3, "{found:?}");
 }
 
 /// nu = 0: Dundurs' beta is 1/2. N_z changes by 0.85 % while the indenter moves, and Q_x is off by 12 % of f N_z.

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 use common::mpi::mpirun;
-use common::program::{MPJR, Outcome, Run, mpjr, names, program};
+use common::program::{MPJR, Outcome, Run, assert_same, mpjr, names, program};
 
 const SLIDING: &str = include_str!("scenes/sliding.toml");
 
@@ -218,6 +218,21 @@ fn check_prints_the_resolved_scene() {
     }
 }
 
+/// The estimate of the cost counts the solutions that multipliers take, and says so.
+#[test]
+fn check_counts_augmentations() {
+    let estimate = |set: &str| {
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::write(directory.path().join("scene.toml"), SLIDING).unwrap();
+        let output = program(1).args(["check", "scene.toml", "--set", set]).current_dir(&directory).output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        text.lines().find_map(|line| line.strip_prefix("estimate:")).unwrap().trim().to_owned()
+    };
+    let (plain, augmented) = (estimate("contact.method=penalty"), estimate("contact.method=augmented"));
+    assert!(augmented.contains(" per step with 2 augmentations, ") && !plain.contains("augmentations"), "{augmented}");
+    assert!(!plain.starts_with(augmented.split(" per step").next().unwrap()), "{plain} {augmented}");
+}
+
 /// A solver that is allowed one Newton iteration cannot follow contact that grows or begins to slip: after the stated number of cuts the
 /// run ends with code 3, and the file holds what was accepted: rows of finite numbers, ever later, each of them a
 /// converged state (the force of a shorter run that ends at the same time).
@@ -252,6 +267,54 @@ fn petsc_options() {
     assert!(outcome.stdout.contains("PETSc option -frobnicate was never asked for"), "{}", outcome.stdout);
     assert_eq!(outcome.stdout.matches("warning").count(), 1);
     assert_eq!(outcome.history("normal_force"), quiet.history("normal_force"));
+}
+
+/// A reader that goes away, as `head` does, changes nothing but what is printed: the exit code is 0 and the results are
+/// those of any other run. A disk that is full is an error of files, told once, after the results.
+#[test]
+fn standard_output_that_takes_no_more() {
+    let whole = small().done();
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("scene.toml"), SLIDING).unwrap();
+    let sweep = "scene = \"scene.toml\"\n[vary]\n\"layer.cells\" = [[4, 4], [8, 8]]\n";
+    std::fs::write(directory.path().join("sweep.toml"), sweep).unwrap();
+    for command in [
+        "check scene.toml",
+        "--help",
+        "run scene.toml --set layer.cells=[8,8] --set phase.indent.steps=4 --set phase.slide.steps=4",
+        "run scene.toml --resume --set layer.cells=[8,8] --set phase.indent.steps=4 --set phase.slide.steps=4",
+        "plot scene.h5 --out figures",
+        "sweep sweep.toml --list",
+        "sweep sweep.toml --slurm",
+        "sweep sweep.toml",
+        "fit --fractional 814.7,0.226 --arms 1 --samples 10 --from 0.1 --to 10",
+        "study scene.toml --vary layer.cells=[4,4],[8,8] --set phase.indent.steps=4 --set phase.slide.steps=4",
+        "verify --quick --only mirror",
+    ] {
+        let run = |stdout: std::process::Stdio| {
+            let mut run = program(1);
+            run.args(command.split(' ')).current_dir(&directory).stdout(stdout).output().unwrap()
+        };
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let unread = run(writer.into());
+        assert_eq!((unread.status.code(), String::from_utf8_lossy(&unread.stderr)), (Some(0), "".into()), "{command}");
+        if command == "--help" {
+            continue;
+        }
+        let full = run(std::fs::File::create("/dev/full").unwrap().into());
+        let message = "mpjr: standard output: cannot be written: No space left on device (os error 28)\n";
+        assert_eq!((full.status.code(), String::from_utf8_lossy(&full.stderr)), (Some(4), message.into()), "{command}");
+    }
+    // Nor does standard error that nobody reads change the exit code.
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let status = program(1).args(["run", "none.toml"]).current_dir(&directory).stderr(writer).status();
+    assert_eq!(status.unwrap().code(), Some(4));
+    assert_same(&whole.directory.path().join("scene.h5"), &directory.path().join("scene.h5"), 0.0);
+    for written in ["figures", "sweep/summary.csv", "scene-study/study.toml"] {
+        assert!(directory.path().join(written).exists(), "{written}");
+    }
 }
 
 /// Words after `--` that are no options, and values that PETSc does not take, are errors of the command line, found

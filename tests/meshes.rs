@@ -3,13 +3,13 @@
 
 mod common;
 
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
+use common::msh::write_msh;
 use common::program::{Run, assert_same, output_of, program};
-use mpjr::mesh::{Layer, Mesh, Sides};
+use mpjr::mesh::{Layer, Sides};
 use mpjr::output::checkpoint;
 
 /// A plate of 0.1 m on a soft layer of 0.3 m.
@@ -60,36 +60,6 @@ fn scene(body: &str, region_of_second: &str) -> String {
     )
 }
 
-/// The mesh as a .msh file of format 2.2: the upper face, the lower one, both sides, and the regions by `names`.
-fn write(mesh: &Mesh, names: &[&str], file: &Path) {
-    let (nx, rows) = (BODY.cells[0], BODY.cells[1] + 1);
-    let column = |x: usize| (1..rows).map(move |j| [x * rows + j - 1, x * rows + j]);
-    let row = |j: usize| (1..=nx).map(move |i| [(i - 1) * rows + j, i * rows + j]);
-    let lines: Vec<(usize, [usize; 2])> = (row(0).map(|ends| (1, ends)))
-        .chain(row(rows - 1).map(|ends| (2, ends)))
-        .chain(column(0).chain(column(nx)).map(|ends| (3, ends)))
-        .collect();
-    let mut text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n".to_owned();
-    writeln!(text, "{}\n1 1 \"top\"\n1 2 \"base\"\n1 3 \"sides\"", 3 + names.len()).unwrap();
-    for (i, name) in names.iter().enumerate() {
-        writeln!(text, "2 {} \"{name}\"", 4 + i).unwrap();
-    }
-    writeln!(text, "$EndPhysicalNames\n$Nodes\n{}", mesh.nodes.len()).unwrap();
-    for (i, node) in mesh.nodes.iter().enumerate() {
-        writeln!(text, "{} {:?} {:?} 0", i + 1, node.x, node.y).unwrap();
-    }
-    writeln!(text, "$EndNodes\n$Elements\n{}", lines.len() + mesh.cells.len()).unwrap();
-    for (i, (tag, [a, b])) in lines.iter().enumerate() {
-        writeln!(text, "{} 1 2 {tag} {tag} {} {}", i + 1, a + 1, b + 1).unwrap();
-    }
-    for (i, cell) in mesh.cells.iter().enumerate() {
-        let (number, tag) = (lines.len() + i + 1, 4 + mesh.regions[i]);
-        let corners: Vec<String> = cell.corners().iter().map(|corner| (corner + 1).to_string()).collect();
-        writeln!(text, "{number} 3 2 {tag} {tag} {}", corners.join(" ")).unwrap();
-    }
-    std::fs::write(file, text + "$EndElements\n").unwrap();
-}
-
 /// The results of a run that keeps its directory.
 fn results(run: Run) -> (tempfile::TempDir, PathBuf) {
     let outcome = run.done();
@@ -105,7 +75,7 @@ fn regions_of_a_mesh_are_strata_of_a_layer() {
     for (strategy, ranks) in [("condensed", 1), ("condensed", 2), ("monolithic", 1), ("monolithic", 2)] {
         let run =
             Run::new(&scene(AS_MESH, "region = \"soft\"")).set(format!("solver.strategy={strategy}")).ranks(ranks);
-        write(&BODY.mesh_of_strata(&[PLATE]), &["plate", "soft"], &run.directory().join("body.msh"));
+        write_msh(&BODY.mesh_of_strata(&[PLATE]), BODY.cells, &["plate", "soft"], &run.directory().join("body.msh"));
         let (_kept, mesh) = results(run);
         let [a, b] = [&layer, &mesh].map(|file| mpjr::output::reader::Results::open(file).unwrap());
         for column in ["normal_force", "tangential_force", "hysteretic_force"] {
@@ -129,7 +99,7 @@ fn a_tolerance_is_a_penalty_on_a_mesh_too() {
     let set = |run: Run| run.set("contact={ tolerance = 1e-3 }");
     let layer = set(Run::new(&scene(AS_LAYER, ""))).done();
     let run = set(Run::new(&scene(AS_MESH, "region = \"soft\"")));
-    write(&BODY.mesh_of_strata(&[PLATE]), &["plate", "soft"], &run.directory().join("body.msh"));
+    write_msh(&BODY.mesh_of_strata(&[PLATE]), BODY.cells, &["plate", "soft"], &run.directory().join("body.msh"));
     let mesh = run.done();
     for column in ["normal_force", "max_penetration"] {
         let (layer, mesh) = (layer.last(column), mesh.last(column));
@@ -159,7 +129,7 @@ fn a_curved_face_meets_a_flat_indenter() {
         let run = Run::new(&scene(AS_MESH, "region = \"soft\"")).set(format!("indenter={indenter}"));
         // A parabola that is dragged far presses elsewhere; the bulge does not.
         let run = run.set("phase.drag.distance=1e-3");
-        write(&mesh, &["plate", "soft"], &run.directory().join("body.msh"));
+        write_msh(&mesh, BODY.cells, &["plate", "soft"], &run.directory().join("body.msh"));
         run.done()
     };
     let parabola = solve(0.0, "{ profile = \"parabola\", radius = 10.0, centre = 0.45 }");

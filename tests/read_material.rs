@@ -5,43 +5,9 @@ mod common;
 
 use std::path::{Path, PathBuf};
 
+use common::smallest::{SMALLEST, assert_round_trip, read_set};
 use mpjr::error::{Error, Result};
 use mpjr::scene::*;
-
-const SMALLEST: &str = r#"
-[layer]
-width = 2
-depth = 1
-cells = [4, 3]
-sides = "free"
-[material]
-young_modulus = 2.6
-poisson_ratio = 0.3
-[indenter]
-profile = "parabola"
-radius = 10
-centre = -1
-[contact]
-penalty = 100
-[[phase]]
-duration = 2
-steps = 4
-[[phase]]
-velocity = -0.5
-distance = 1.0
-steps = 2
-"#;
-
-fn read_set(text: &str, overrides: &[&str]) -> Result<Scene> {
-    let overrides = overrides.iter().map(|text| text.to_string()).collect();
-    read(text, &Source { file: PathBuf::from("dir/smallest.toml"), overrides })
-}
-
-fn assert_round_trip(scene: &Scene) {
-    let text = scene.to_toml();
-    let again = read(&text, &Source { file: PathBuf::from("resolved.toml"), overrides: vec![] });
-    assert_eq!(again.as_ref(), Ok(scene), "{text}");
-}
 
 /// A loader of files that are only here, and what it was asked for.
 fn load(file: &Path) -> Result<String> {

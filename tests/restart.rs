@@ -8,7 +8,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+use common::msh::write_msh;
 use common::program::{assert_same, ends_with, output_of, program};
+use mpjr::mesh::{Layer, Sides};
 use mpjr::output::{checkpoint, reader::Results};
 
 /// Two phases, of which `slide` has `steps`; `material` and `solver` are the rest of their tables.
@@ -267,6 +269,63 @@ fn what_cannot_be_resumed_is_refused() {
     assert!(message.contains("is not a whole checkpoint") && message.lines().count() == 1, "{message}");
     std::fs::remove_file(checkpoint::beside(&out)).unwrap();
     assert!(ends_with(&mut resume(&[]), 2).contains("before its first checkpoint"));
+}
+
+/// A mesh or a profile whose file has changed is another one, however like the first it is: it is refused, before the end
+/// of the run and after, and taken again once the file is what it was.
+#[test]
+fn files_that_have_changed_are_refused() {
+    let put_mesh = |directory: &Path, grading: f64| {
+        let layer = Layer { width: 1.0, depth: 0.5, cells: [24, 8], grading, sides: Sides::Roller };
+        write_msh(&layer.mesh(), layer.cells, &["body"], &directory.join("body.msh"));
+    };
+    let put_profile = |directory: &Path, height: f64| {
+        let line = |k: usize| format!("{:?} {:?}\n", k as f64 / 24.0, 1e-3 * height * (k as f64 / 24.0 - 0.5).powi(2));
+        std::fs::write(directory.join("profile.txt"), (0..24).map(line).collect::<String>()).unwrap();
+    };
+    let profile = "indenter={ profile = \"sampled\", file = \"profile.txt\", extend = \"periodic\" }";
+    assert_change_is_refused("mesh.file", &[], &put_mesh);
+    assert_change_is_refused("indenter.file", &["--set", profile], &put_profile);
+}
+
+/// `put` makes the file that `key` names, as another one for each number.
+fn assert_change_is_refused(key: &str, set: &[&str], put: &dyn Fn(&Path, f64)) {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = scene(directory.path(), 1000, &ratio(), "");
+    if key == "mesh.file" {
+        let text = std::fs::read_to_string(&scene).unwrap();
+        let (_, after) = text.split_once("[material]").unwrap();
+        let mesh = "[mesh]\nfile = \"body.msh\"\ncontact = \"top\"\nfixed = [\"base\"]\nroller = [\"sides\"]\n";
+        std::fs::write(&scene, format!("{mesh}[material]{after}")).unwrap();
+    }
+    let (whole, out) = (directory.path().join("whole.h5"), directory.path().join("run.h5"));
+    put(directory.path(), 1.0);
+    output_of(run(&mut program(1), &scene, &whole).args(set));
+    let mut child = run(&mut program(1), &scene, &out).args(set).stdout(Stdio::null()).spawn().unwrap();
+    wait_for(&mut child, &out, 2);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let message = format!(
+        "mpjr: {}: cannot be resumed: the file that {key} names is not what it was when the run began; put that \
+         back, or run without --resume\n",
+        out.display()
+    );
+    let resume = || {
+        let mut command = run(&mut program(1), &scene, &out);
+        command.args(set).arg("--resume");
+        command
+    };
+    put(directory.path(), 1.01);
+    assert_eq!(ends_with(&mut resume(), 2), message);
+    put(directory.path(), 1.0);
+    output_of(&mut resume());
+    assert_same(&whole, &out, 0.0);
+    put(directory.path(), 1.01);
+    assert_eq!(ends_with(&mut resume(), 2), message);
+    // Results of a version that did not tell.
+    hdf5::File::open_rw(&out).unwrap().delete_attr("inputs").unwrap();
+    let message = ends_with(&mut resume(), 2);
+    assert!(message.contains(&format!("does not tell the content of the file that {key} names")), "{message}");
 }
 
 /// On a full disk the program ends with exit code 4, and what is there afterwards can be gone on with elsewhere.

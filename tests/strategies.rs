@@ -2,10 +2,9 @@
 //! 1e-8 relative: for every material rule, side condition, memory, quadrature and friction law.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use std::path::Path;
-use std::process::Command;
+mod common;
 
-use mpjr::output::reader::Results;
+use common::program::{Outcome, Run};
 
 /// A layer pressed beyond full contact of its middle, slid, and lifted again.
 const SCENE: &str = r#"
@@ -51,21 +50,6 @@ tolerance = 1e-11
 bulk_at = ["indent", 2.345]
 "#;
 
-/// Runs the scene with a strategy and gives its results.
-fn run(directory: &Path, strategy: &str, overrides: &[String]) -> Results {
-    let (scene, out) = (directory.join("scene.toml"), directory.join(format!("{strategy}.h5")));
-    std::fs::write(&scene, SCENE).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mpjr"));
-    command.arg("run").arg(&scene).arg("--out").arg(&out);
-    command.args(["--set", &format!("solver.strategy={strategy}")]);
-    for change in overrides {
-        command.args(["--set", change]);
-    }
-    let output = command.output().unwrap();
-    assert!(output.status.success(), "{overrides:?}: {}", String::from_utf8_lossy(&output.stderr));
-    Results::open(&out).unwrap()
-}
-
 /// The largest difference over the largest value.
 fn difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
@@ -75,7 +59,6 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn condensed_is_the_same_discrete_solution() {
-    let directory = tempfile::tempdir().unwrap();
     let mut cases = Vec::new();
     for sides in ["periodic", "free", "roller", "fixed"] {
         for rule in ["constant_ratio", "constant_bulk_modulus"] {
@@ -101,7 +84,11 @@ fn condensed_is_the_same_discrete_solution() {
         // A table cannot be taken out by --set; a coefficient of zero is the frictionless law.
         let case: Vec<String> =
             case.iter().map(|change| change.replace("friction=none", "friction.coefficient=0.0")).collect();
-        let (whole, face) = (run(directory.path(), "monolithic", &case), run(directory.path(), "condensed", &case));
+        let solved = ["monolithic", "condensed"].map(|strategy| {
+            let run = Run::new(SCENE).set(format!("solver.strategy={strategy}"));
+            case.iter().fold(run, |run, change| run.set(change)).done()
+        });
+        let [whole, face] = solved.each_ref().map(Outcome::results);
         for column in ["normal_force", "tangential_force", "hysteretic_force", "contact_fraction", "stick_fraction"] {
             let (a, b) = (whole.history(column).unwrap(), face.history(column).unwrap());
             if a.iter().any(|x| x.abs() > 1e-12) {

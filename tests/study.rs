@@ -4,8 +4,11 @@
 mod common;
 
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
-use common::program::{ends_with, output_of, program};
+use common::program::{Run, ends_with, output_of, program};
+use mpjr::output::HistoryRow;
+use mpjr::study::Difference;
 use toml::{Table, Value};
 
 /// The sliding scene, small and short.
@@ -89,6 +92,104 @@ fn the_cheapest_setting() {
     assert!(!directory.path().join("sliding-study").exists());
     let refused = ends_with(study(&scene, 1, &steps).args(["--error", "1e-9"]), 2);
     assert!(refused.contains("no setting on these ladders meets it"), "{refused}");
+}
+
+/// A profile with a hole that only the finer cells with the finer steps come upon: every ladder can be climbed, all together
+/// cannot be solved. The ladders are told and kept, and the message says what failed.
+#[test]
+fn the_finest_together_may_be_too_much() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = scene(directory.path());
+    // Nodes of 16 cells are at 0.0625 m, those of 8 are not; steps of 0.015 m take the hole there, those of 0.03 m do not.
+    let hole = "indenter={ profile = \"expression\", formula = \"1e-3*(x-0.5)^2 + 0*sqrt((x-0.0475)^2 - 1e-12)\" }";
+    let set = ["layer.sides=free", "phase.slide.distance=0.03", "layer.cells=[8,4]", "phase.slide.steps=1", hole];
+    let set = set.iter().flat_map(|set| ["--set", set]);
+    let vary = ["--vary", "layer.cells=[8,4],[16,8]", "--vary", "phase.slide.steps=1,2"];
+    let output = study(&scene, 1, &vary).args(set.clone()).output().unwrap();
+    let [told, message] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
+    assert_eq!(output.status.code(), Some(3), "{told}{message}");
+    let reason = "sliding.toml: no error can be told, as the finest of all ladders together could not be solved: phase \"slide\": ";
+    assert!(message.contains(reason) && message.lines().count() == 1, "{message}");
+    assert!(told.contains("  [16,8]  ") && !told.contains("NaN") && !told.contains("for 10 %"), "{told}");
+    let out = directory.path().join("sliding-study");
+    assert_eq!(std::fs::read_to_string(out.join("runs.csv")).unwrap().lines().count(), 5);
+    let found: Table = std::fs::read_to_string(out.join("study.toml")).unwrap().parse().unwrap();
+    assert_eq!(found["ladder"].as_array().unwrap().len(), 2);
+    assert!(found["advice"].as_array().unwrap().is_empty() && !found.contains_key("error"), "{found}");
+    assert!(out.join("work-precision.png").exists());
+    // The same asked for as options: nothing but the message.
+    let output = study(&scene, 1, &vary).args(set.clone()).args(["--error", "0.1"]).output().unwrap();
+    assert_eq!((output.status.code(), output.stdout.len()), (Some(3), 0));
+    // What fails as it is says why.
+    let fails = ["layer.cells=[16,8]", "phase.slide.steps=2"].iter().flat_map(|set| ["--set", set]);
+    let message = ends_with(study(&scene, 1, &vary).args(set).args(fails), 3);
+    assert!(message.contains("sliding.toml: cannot be studied as it is: phase \"slide\": "), "{message}");
+}
+
+/// A study that is stopped in the last, longest run keeps the ladders that it climbed.
+#[test]
+fn a_study_that_is_stopped_keeps_its_ladders() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = scene(directory.path());
+    let vary = ["--vary", "layer.cells=[8,8],[256,8]", "--vary", "phase.slide.steps=8,20000"];
+    let mut child = study(&scene, 1, &vary).stdout(std::process::Stdio::null()).spawn().unwrap();
+    let runs = directory.path().join("sliding-study/runs.csv");
+    let rows = || std::fs::read_to_string(&runs).map_or(0, |text| text.lines().count());
+    let begun = Instant::now();
+    while rows() < 5 {
+        assert!(begun.elapsed() < Duration::from_secs(60) && child.try_wait().unwrap().is_none(), "no ladders come");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    assert_eq!(child.wait().unwrap().code(), None);
+    assert_eq!(rows(), 5);
+}
+
+/// A row of the README's table of presets: the steps, the error of N and Q, and that of the hysteretic force.
+fn published(preset: &str) -> [f64; 3] {
+    let readme = std::fs::read_to_string(common::directory("README.md")).unwrap();
+    let row = readme.lines().find(|line| line.starts_with(&format!("| `\"{preset}\"` |"))).unwrap();
+    let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+    [4, 5, 6].map(|column| cells[column].parse().unwrap())
+}
+
+/// The presets make the errors that the README tells, on the scene that it tells them of: against steps for a hundredth of
+/// the tolerance of the last, which 12 000 equal steps confirm. No more than is told, but for its last digit, and no less
+/// than half of it.
+#[test]
+fn the_presets_are_as_accurate_as_told() {
+    let scene = std::fs::read_to_string(common::directory("runs/presets.toml")).unwrap();
+    let solve = |set: &[String]| {
+        let outcome = set.iter().fold(Run::new(&scene), |run, set| run.set(set)).done();
+        let column = |name: &str| outcome.history(name);
+        let [time, n, q, h] = ["time", "normal_force", "tangential_force", "hysteretic_force"].map(column);
+        let row = |i: usize| HistoryRow {
+            time: time[i],
+            normal_force: n[i],
+            tangential_force: q[i],
+            hysteretic_force: h[i],
+            ..HistoryRow::default()
+        };
+        (0..time.len()).map(row).collect::<Vec<HistoryRow>>()
+    };
+    let finely = |settings: [&str; 3]| {
+        let phases = ["indent", "onset", "slide"].into_iter().zip(settings);
+        let set = phases.map(|(phase, setting)| format!("phase.{phase}.{setting}"));
+        solve(&set.chain(["solver.tolerance=1e-11".to_owned()]).collect::<Vec<_>>())
+    };
+    let finest = finely(["tolerance=1e-6"; 3]);
+    let equal = Difference::between(&finest, &finely(["steps=2000", "steps=2000", "steps=8000"]));
+    assert!(equal.error() < 2e-4 && equal.hysteretic < 3e-4, "{equal:?}");
+    for preset in ["fast", "balanced", "reference"] {
+        let history = solve(&[format!("solver.preset={preset}")]);
+        let found = Difference::between(&history, &finest);
+        let [steps, error, hysteretic] = published(preset);
+        println!("{preset}: {} steps, {:.2e}, hysteretic {:.2e}", history.len() - 1, found.error(), found.hysteretic);
+        assert!(((history.len() - 1) as f64 / steps - 1.0).abs() < 0.05, "{preset}: {} steps", history.len() - 1);
+        for (found, told) in [(found.error(), error), (found.hysteretic, hysteretic)] {
+            assert!(found < 1.1 * told && found > 0.5 * told, "{preset}: {found:e}, told {told:e}");
+        }
+    }
 }
 
 #[test]

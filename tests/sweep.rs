@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use common::program::{assert_same, ends_with, output_of, program};
+use common::program::{assert_same, ends_with, names, output_of, program};
 use mpjr::output::reader::Results;
 
 const SCENE: &str = r#"
@@ -79,6 +79,11 @@ fn summary(out: &Path) -> Vec<Vec<String>> {
     text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect()
 }
 
+/// How many results of phases that cases share there are.
+fn shared_runs(out: &Path) -> usize {
+    names(&out.join(".shared")).iter().filter(|name| name.ends_with(".h5")).count()
+}
+
 /// Each case is the run of its scene alone, the shared approach is solved once, and nothing is solved twice.
 #[test]
 fn every_case_is_its_scene_alone() {
@@ -92,9 +97,7 @@ fn every_case_is_its_scene_alone() {
     assert!(!out.exists());
 
     assert!(output_of(&mut sweep(program(1), &out, &[])).contains("6 of 6 case(s) complete, 0 failed"));
-    let shared = std::fs::read_dir(out.join(".shared")).unwrap().map(|entry| entry.unwrap().path());
-    let shared: Vec<PathBuf> = shared.filter(|path| path.extension().is_some_and(|end| end == "h5")).collect();
-    assert_eq!(shared.len(), 2);
+    assert_eq!(shared_runs(&out), 2);
     for (case, material, velocity) in [(1, "soft", "0.1"), (5, "hard", "1")] {
         let alone = directory.path().join(format!("alone-{case}.h5"));
         let table = std::fs::read_to_string(directory.path().join(format!("{material}.toml"))).unwrap();
@@ -126,6 +129,69 @@ fn every_case_is_its_scene_alone() {
     output_of(&mut sweep(program(1), &out, &[]));
     let changed: Vec<usize> = (0..6).filter(|&case| modified(case) != before[case]).collect();
     assert_eq!(changed, [0, 3]);
+}
+
+/// Cases whose steps are chosen as they go: what chooses them is part of the state at the end of the shared phases, so that
+/// each case takes the steps of its scene alone. Their tolerance is relative to the greatest penetration of all phases, so
+/// that nothing is shared before one that presses deeper.
+#[test]
+fn shared_phases_with_adaptive_steps() {
+    for (deepest, shared) in [(1e-3, 2), (1.2e-3, 0)] {
+        adaptive_cases(deepest, shared);
+    }
+}
+
+/// The last phase presses to `deepest`; so many runs of phases are shared.
+fn adaptive_cases(deepest: f64, shared: usize) {
+    let phases = format!(
+        "[[phase]]\nname = \"back\"\nvelocity = -0.05\ndistance = 0.1\napproach = {deepest:e}\ntolerance = 2e-3\n[output]"
+    );
+    let scene = SCENE.replace("steps = 10\n", "tolerance = 2e-3\n").replace("steps = 12\n", "tolerance = 1e-3\n");
+    let (directory, out) = prepare(
+        "scene = \"scene.toml\"\n[vary]\n\"phase.slide.velocity\" = [0.02, 0.1]\n\
+         \"phase.back.tolerance\" = [2e-3, 5e-4]\n",
+    );
+    let (before, _) = scene.split_once("[material]").unwrap();
+    let (_, after) = scene.split_once("[indenter]").unwrap();
+    let scene = format!("{before}{SOFT}[indenter]{}", after.replace("[output]", &phases));
+    let file = directory.path().join("scene.toml");
+    std::fs::write(&file, scene).unwrap();
+    output_of(&mut sweep(program(1), &out, &[]));
+    let mut steps = Vec::new();
+    for (case, (velocity, tolerance)) in [(0.02, 2e-3), (0.02, 5e-4), (0.1, 2e-3), (0.1, 5e-4)].iter().enumerate() {
+        let alone = directory.path().join("alone.h5");
+        let set = [format!("phase.slide.velocity={velocity}"), format!("phase.back.tolerance={tolerance:e}")];
+        let set = set.iter().flat_map(|set| ["--set", set]);
+        output_of(program(1).arg("run").arg(&file).arg("--out").arg(&alone).args(set));
+        assert_same(&alone, &out.join(format!("case-{case:04}.h5")), 0.0);
+        steps.push(Results::open(&alone).unwrap().history("time").unwrap().len());
+    }
+    steps.dedup();
+    assert!(steps.len() == 4, "the cases differ in their steps: {steps:?}");
+    assert_eq!(shared_runs(&out), shared);
+}
+
+/// Results of a profile whose file has changed since are not those of the sweep.
+#[test]
+fn a_file_that_has_changed_makes_its_cases_anew() {
+    let (directory, out) = prepare("scene = \"scene.toml\"\n[vary]\n\"phase.slide.velocity\" = [0.01, 0.1]\n");
+    let (before, _) = SCENE.split_once("[indenter]").unwrap();
+    let (_, after) = SCENE.split_once("[contact]").unwrap();
+    let sampled = "profile = \"sampled\"\nfile = \"profile.txt\"\nextend = \"periodic\"";
+    let scene = format!("{before}[indenter]\n{sampled}\n[contact]{after}");
+    std::fs::write(directory.path().join("scene.toml"), scene).unwrap();
+    let solve = |height: f64| {
+        let line = |k: usize| format!("{:?} {:?}\n", k as f64 / 16.0, height * (k as f64 / 16.0 - 0.5).powi(2));
+        std::fs::write(directory.path().join("profile.txt"), (0..16).map(line).collect::<String>()).unwrap();
+        let told = output_of(&mut sweep(program(1), &out, &[]));
+        let force = Results::open(&out.join("case-0001.h5")).unwrap().history("normal_force").unwrap();
+        (told.contains("2 of 2 case(s) were complete before"), force[force.len() - 1])
+    };
+    let first = solve(1e-3);
+    assert_eq!(solve(1e-3), (true, first.1));
+    let changed = solve(2e-3);
+    assert!(!changed.0 && changed.1 != first.1, "{first:?} {changed:?}");
+    assert_eq!(solve(1e-3), (false, first.1));
 }
 
 /// Three ranks in groups of one and of two; one case alone; the same numbers.

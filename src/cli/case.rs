@@ -119,6 +119,7 @@ fn open(job: &Job<'_>, started: SystemTime, mesh: &Mesh, phases: &[Phase], begun
     let metadata = Metadata {
         title: scene.title.clone(),
         scene: scene.to_toml(),
+        inputs: composition::inputs(scene, job.file)?,
         version: env!("CARGO_PKG_VERSION").into(),
         git_commit: env!("MPJR_GIT_COMMIT").into(),
         petsc_version: job.session.petsc_version(),

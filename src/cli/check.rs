@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::terminal::tell;
 use super::{profile, summary};
 use crate::composition;
 use crate::error::Result;
@@ -27,8 +28,8 @@ pub fn run(arguments: &CheckArguments) -> Result<()> {
     let elevations = composition::elevations(&scene, file)?;
     let outline = composition::outline(&scene, file)?;
     let shape = composition::shape(&scene, file, &elevations, outline.face)?;
-    println!("{}", scene.to_toml().trim_end());
-    println!("\n{}", profile::describe(&scene, &shape, outline.face));
-    println!("{}", summary::plan(&scene, &outline));
+    tell(scene.to_toml().trim_end());
+    tell(format_args!("\n{}", profile::describe(&scene, &shape, outline.face)));
+    tell(summary::plan(&scene, &outline));
     Ok(())
 }

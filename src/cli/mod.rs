@@ -14,6 +14,7 @@ mod run;
 mod study;
 mod summary;
 mod sweep;
+mod terminal;
 mod verify;
 
 use clap::{Parser, Subcommand};
@@ -22,6 +23,8 @@ use mpi::traits::Communicator;
 
 use crate::error::{Error, Result};
 use crate::petsc::Session;
+
+use terminal::warn;
 
 /// Transient viscoelastic contact with friction, by interface finite elements with embedded profiles (MPJR).
 ///
@@ -75,13 +78,13 @@ pub fn main() -> i32 {
         Command::Study(arguments) => study::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
     };
-    match outcome {
+    match outcome.and_then(|()| terminal::finish()) {
         Ok(()) => 0,
         // Defects may be this process's alone; of anything else the first process tells.
         Err(error @ Error::Internal(_)) if !is_first_process() => error.exit_code(),
         Err(error) => {
             if is_first_process() {
-                eprintln!("mpjr: {error}");
+                warn(&error);
             }
             exit_code(error.exit_code())
         }
@@ -113,7 +116,7 @@ fn abort_if_alone(world: &SimpleCommunicator, outcome: &Result<()>) {
     if let Err(error @ Error::Internal(_)) = outcome
         && world.size() > 1
     {
-        eprintln!("mpjr: rank {}: {error}", world.rank());
+        warn(format_args!("rank {}: {error}", world.rank()));
         world.abort(error.exit_code());
     }
 }

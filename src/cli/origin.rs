@@ -5,9 +5,10 @@ use std::path::Path;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use crate::composition;
 use crate::error::{Error, Result};
 use crate::loading::Phase;
-use crate::output::{Rows, checkpoint, left};
+use crate::output::{Left, Rows, checkpoint, left};
 use crate::parallel::agree;
 use crate::scene::{Scene, differences};
 use crate::snapshot::Snapshot;
@@ -113,14 +114,21 @@ fn start_of(phases: &[Phase], count: usize) -> Result<Position> {
     Position::start_of(phases, count).ok_or_else(no_such)
 }
 
-/// Whether the run whose results are at `out` is already complete; an error when it is not one that can go on. To be
-/// called on one rank.
-pub fn is_complete(out: &Path, scene: &Scene) -> Result<bool> {
+/// Whether results are those of the scene in `file` and of the files that it names, as these are now.
+pub fn is_of(left: &Left, scene: &Scene, file: &Path) -> bool {
+    differences(&left.scene, &scene.to_toml()).is_empty()
+        && composition::inputs(scene, file).is_ok_and(|inputs| inputs == left.inputs)
+}
+
+/// Whether the run whose results are at `out` is already complete; an error when it is not one that can go on with the
+/// scene in `scene_file`. To be called on one rank.
+pub fn is_complete(out: &Path, scene: &Scene, scene_file: &Path) -> Result<bool> {
     let file = out.display();
     let Some(left) = left(out)? else {
         return Err(Error::Usage(format!("{file}: there is nothing to resume; run without --resume")));
     };
     refuse_another_scene(out, &left.scene, scene)?;
+    refuse_other_inputs(out, &left.inputs, &composition::inputs(scene, scene_file)?)?;
     if left.status == "complete" {
         return Ok(true);
     }
@@ -154,4 +162,17 @@ fn refuse_another_scene(file: &Path, stored: &str, scene: &Scene) -> Result<()> 
         file.display(),
         shown.join("; ")
     )))
+}
+
+/// Both are as [`composition::inputs`] gives them.
+fn refuse_other_inputs(file: &Path, there: &str, here: &str) -> Result<()> {
+    let Some(other) = here.lines().find(|line| there.lines().all(|known| known != *line)) else { return Ok(()) };
+    let key = other.split(' ').next().unwrap_or_default();
+    let reason = match there.lines().any(|known| known.split(' ').next() == Some(key)) {
+        true => format!("the file that {key} names is not what it was when the run began; put that back"),
+        false => {
+            format!("another version of mpjr wrote it, and it does not tell the content of the file that {key} names")
+        }
+    };
+    Err(Error::Usage(format!("{}: cannot be resumed: {reason}, or run without --resume", file.display())))
 }

@@ -6,6 +6,7 @@ use clap::Args;
 use toml::Table;
 
 use super::fit::PowerLaw;
+use super::terminal::{tell, warn};
 use crate::error::{Error, Result};
 use crate::plot::Sheet;
 use crate::plot::material::{self, Solid};
@@ -44,7 +45,7 @@ pub fn run(arguments: &PlotArguments) -> Result<()> {
     std::fs::create_dir_all(&arguments.out).map_err(|error| Error::file(&arguments.out, error))?;
     for (stem, sheet) in drawings {
         for file in sheet.write(&arguments.out.join(stem))? {
-            println!("{}", file.display());
+            tell(file.display());
         }
     }
     Ok(())
@@ -95,7 +96,7 @@ fn of_sweep(directory: &Path, asked: &[String]) -> Result<Vec<Drawing>> {
     check(asked, &known, "the directory of a sweep")?;
     let (sweep, unfinished) = Sweep::open(directory)?;
     for file in unfinished {
-        eprintln!("mpjr: {}: not finished, and left out", file.display());
+        warn(format_args!("{}: not finished, and left out", file.display()));
     }
     let wanted = |kind: &&sweep::Kind| asked.is_empty() || asked.iter().any(|name| name == kind.name);
     Ok(sweep::FIGURES.iter().filter(wanted).map(|kind| (kind.name.to_owned(), (kind.sheet)(&sweep))).collect())

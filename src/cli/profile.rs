@@ -73,7 +73,7 @@ fn warnings(scene: &Scene, shape: &Shape, face: Stretch) -> Vec<String> {
             false => format!("the profile stays above 0: contact begins only at an approach of {low:.3e} m"),
         });
     }
-    let deepest = scene.phases.iter().filter_map(|phase| phase.approach).fold(0.0, f64::max);
+    let deepest = scene.deepest();
     if deepest <= low {
         list.push(format!("the indenter never touches the face where it starts: its approach ends at {deepest:.3e} m"));
     }

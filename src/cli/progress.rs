@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::sweep::claim::Claim;
+use super::terminal::tell;
 
 /// Plain lines come no closer than this, but for the ends of phases.
 const LINE_EVERY: Duration = Duration::from_secs(5);
@@ -88,10 +89,10 @@ impl Progress {
             }
             Self::Lines { total, last } => {
                 if phase_end || last.elapsed() >= LINE_EVERY {
-                    println!(
+                    tell(format_args!(
                         "{done}/{total}  {phase}  t = {time:.4e} s  N = {normal_force:.5e}  Q = {tangential_force:.5e} N/m  \
                          {newton} Newton"
-                    );
+                    ));
                     *last = Instant::now();
                 }
             }

@@ -11,6 +11,7 @@ use super::interrupt::Interrupt;
 use super::origin::{self, Origin};
 use super::progress::Progress;
 use super::summary;
+use super::terminal::tell;
 use crate::composition::Compliances;
 use crate::error::{Error, Result};
 use crate::parallel::{agree, share_text};
@@ -54,12 +55,12 @@ fn solve(
     let out = arguments.out.clone().unwrap_or_else(|| default_output(file));
     let mut origin = Origin::Rest;
     if arguments.resume {
-        let mine = if world.rank() == 0 { origin::is_complete(&out, &scene).map(u8::from) } else { Ok(0) };
+        let mine = if world.rank() == 0 { origin::is_complete(&out, &scene, file).map(u8::from) } else { Ok(0) };
         let mut complete = agree(world, mine)?;
         world.process_at_rank(0).broadcast_into(&mut complete);
         if complete != 0 {
             if world.rank() == 0 {
-                println!("{}: this run is complete; there is nothing to go on with", out.display());
+                tell(format_args!("{}: this run is complete; there is nothing to go on with", out.display()));
             }
             return Ok(());
         }
@@ -79,11 +80,11 @@ fn solve(
     };
     let done = case::solve(&job, |steps| Progress::new(steps, world.rank() == 0))?;
     if world.rank() == 0 {
-        print!("{}", summary::outcome(&scene, &done.outcome, &done.last));
+        tell(summary::outcome(&scene, &done.outcome, &done.last));
         for option in session.unused_options() {
-            println!("warning:       PETSc option -{option} was never asked for: is it misspelt?");
+            tell(format_args!("warning:       PETSc option -{option} was never asked for: is it misspelt?"));
         }
-        println!("results:       {}", out.display());
+        tell(format_args!("results:       {}", out.display()));
     }
     done.result.map_err(|error| match error {
         Error::Solver(text) => {

@@ -9,6 +9,7 @@ use toml::{Table, Value};
 
 use super::summary::seconds;
 use super::sweep::{line, replace};
+use super::terminal;
 use crate::error::{Error, Result};
 use crate::parallel::agree;
 use crate::plot::replaceable;
@@ -53,9 +54,8 @@ struct Findings<'a> {
     base: Run,
     climbed: Vec<Climbed>,
     advised: Vec<Option<Advice>>,
-    /// The error of the scene as it is, and that which the finest rungs leave all together.
-    error: f64,
-    left: f64,
+    /// The error of the scene as it is, where the finest rungs all together could be solved.
+    error: Option<f64>,
 }
 
 fn climb(world: &SimpleCommunicator, arguments: &StudyArguments) -> Result<()> {
@@ -70,52 +70,60 @@ fn climb(world: &SimpleCommunicator, arguments: &StudyArguments) -> Result<()> {
     }
     let tell = |changes: &str, run: Option<&Run>| {
         if chatty {
-            println!("{}", told(changes, run));
+            terminal::tell(told(changes, run));
         }
     };
     let mut solver = Solver::new(&subject, &tell);
-    let gave_up = |what: &str| Error::Solver(format!("{}: could not be solved: {what}", file.display()));
-    let base = solver.run(&[])?.ok_or_else(|| gave_up("no convergence as it is"))?;
-    let climbed = ladders.into_iter().map(|ladder| solver.climb(ladder)).collect::<Result<Vec<_>>>()?;
-    let targets = arguments.error.map_or(TARGETS.to_vec(), |error| vec![error]);
-    let left: f64 = climbed.iter().map(|ladder| ladder.finest).sum();
-    // The ladders are worth telling of even where their finest rungs together are too much.
-    let finest = solver.run(&advice::finest(&climbed))?;
-    let (advised, error) = match &finest {
-        Some(finest) => (
-            advice::advise(&mut solver, &climbed, (&base, finest), &targets)?,
-            Difference::between(&base.history, &finest.history).error() + left,
-        ),
-        None => (Vec::new(), f64::NAN),
+    let write = |work: &dyn Fn(&Path) -> Result<()>| match &out {
+        Some(out) => agree(world, if tells { work(out) } else { Ok(()) }),
+        None => Ok(()),
     };
-    let findings = Findings { file, base, climbed, advised, error, left };
-    let wrote = match &out {
-        Some(out) if tells => findings.write(out),
-        _ => Ok(()),
+    let Some(base) = solver.run(&[])? else {
+        return Err(Error::Solver(format!("{}: cannot be studied as it is: {}", file.display(), solver.reason())));
     };
-    agree(world, wrote)?;
-    if chatty {
-        print!("{}", findings.table());
+    let mut findings = Findings { file, base, climbed: Vec::new(), advised: Vec::new(), error: None };
+    // What is found is kept at once: the finest rungs all together may take long, or be too much.
+    for ladder in ladders {
+        findings.climbed.push(solver.climb(ladder)?);
+        write(&|out| findings.write_runs(out))?;
     }
+    if chatty {
+        terminal::tell(findings.ladders());
+    }
+    let targets = arguments.error.map_or(TARGETS.to_vec(), |error| vec![error]);
+    let finest = solver.run(&advice::finest(&findings.climbed))?;
+    if let Some(finest) = &finest {
+        let Findings { base, climbed, .. } = &findings;
+        let error = Difference::between(&base.history, &finest.history).error() + findings.left();
+        let advised = advice::advise(&mut solver, climbed, (base, finest), &targets)?;
+        (findings.error, findings.advised) = (Some(error), advised);
+    }
+    write(&|out| findings.write(out))?;
     if finest.is_none() {
-        let reason =
-            "no convergence with the finest of all ladders together; give ladders that end before them, with --vary";
-        return Err(gave_up(reason));
+        return Err(Error::Solver(format!(
+            "{}: no error can be told, as the finest of all ladders together could not be solved: {}; give ladders that \
+             end before them, with --vary",
+            file.display(),
+            solver.reason()
+        )));
+    }
+    if chatty {
+        terminal::tell(findings.advice());
     }
     match (arguments.error, findings.advised.first()) {
         (Some(_), Some(Some(advice))) => {
             if tells {
-                println!("{}", options(&advice.changes));
+                terminal::tell(options(&advice.changes));
             }
             Ok(())
         }
         (Some(error), _) => Err(Error::Usage(format!(
             "--error {error}: no setting on these ladders meets it (the finest leave about {:.1e}); give finer ones with --vary",
-            findings.left
+            findings.left()
         ))),
         (None, _) => {
             if let (true, Some(out)) = (tells, &out) {
-                println!("tables and figure: {}", out.display());
+                terminal::tell(format_args!("tables and figure: {}", out.display()));
             }
             Ok(())
         }
@@ -189,8 +197,13 @@ const HEADER: [&str; 11] = [
 ];
 
 impl Findings<'_> {
-    /// For the terminal.
-    fn table(&self) -> String {
+    /// The error that the finest rungs leave all together.
+    fn left(&self) -> f64 {
+        self.climbed.iter().map(|ladder| ladder.finest).sum()
+    }
+
+    /// What the ladders came to, for the terminal.
+    fn ladders(&self) -> String {
         let mut text = format!("\n{:<28} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "", "time", "N", "Q", "hyster.", "error");
         for ladder in &self.climbed {
             let order = ladder.order.map_or("no clean order".to_owned(), |order| format!("order {order:.2}"));
@@ -211,7 +224,13 @@ impl Findings<'_> {
                 };
             }
         }
-        text += &format!("\nas it is: {}, error {:.1e}\n", seconds(self.base.seconds), self.error);
+        text
+    }
+
+    /// What is best, for the terminal.
+    fn advice(&self) -> String {
+        let error = self.error.map_or(String::new(), |error| format!(", error {error:.1e}"));
+        let mut text = format!("\nas it is: {}{error}\n", seconds(self.base.seconds));
         for (target, advice) in TARGETS.iter().zip(&self.advised) {
             text += &match advice {
                 None => format!("for {} %: nothing on these ladders meets it\n", 100.0 * target),
@@ -228,9 +247,13 @@ impl Findings<'_> {
         text
     }
 
-    /// `runs.csv`, `study.toml`, `work-precision.png` and `.svg`.
+    /// `runs.csv`: the ladders climbed so far.
+    fn write_runs(&self, out: &Path) -> Result<()> {
+        replace(&out.join("runs.csv"), &self.csv())
+    }
+
+    /// `study.toml`, `work-precision.png` and `.svg`.
     fn write(&self, out: &Path) -> Result<()> {
-        replace(&out.join("runs.csv"), &self.csv())?;
         replace(&out.join("study.toml"), &self.toml()?)?;
         let stem = self.file.file_stem().unwrap_or_default().to_string_lossy();
         figure::work_precision(&stem, &self.climbed, &self.advised).write(&out.join("work-precision")).map(|_| ())
@@ -274,14 +297,14 @@ impl Findings<'_> {
                 ("set", Value::Array(advice.changes.iter().cloned().map(Value::String).collect())),
             ]))
         });
-        let all = table(vec![
+        let mut all = table(vec![
             ("scene", Value::String(self.file.display().to_string())),
             ("seconds", Value::Float(self.base.seconds)),
-            ("error", Value::Float(self.error)),
-            ("error_of_the_finest", Value::Float(self.left)),
+            ("error_of_the_finest", Value::Float(self.left())),
             ("ladder", Value::Array(ladders.collect())),
             ("advice", Value::Array(advice.collect())),
         ]);
+        all.extend(self.error.map(|error| ("error".to_owned(), Value::Float(error))));
         let text =
             toml::to_string(&all).map_err(|error| Error::Internal(format!("a study has no form in TOML: {error}")))?;
         Ok(format!("{MARK}\n{text}"))

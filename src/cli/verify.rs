@@ -7,6 +7,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::summary::seconds;
+use super::terminal::tell;
 use crate::error::{Error, Result};
 use crate::verify::{self, Row, Tally};
 
@@ -40,7 +41,7 @@ fn compare(world: &SimpleCommunicator, arguments: &VerifyArguments) -> Result<()
         }
     }
     if prints {
-        println!("{}", header());
+        tell(header());
     }
     let mut tally = Tally::default();
     for case in &cases {
@@ -48,12 +49,13 @@ fn compare(world: &SimpleCommunicator, arguments: &VerifyArguments) -> Result<()
         let rows = verify::solve(world, case)?;
         tally.add(&rows);
         if prints {
-            println!("{} [{}; {}]", case.name, case.source, seconds(since.elapsed().as_secs_f64()));
-            rows.iter().for_each(|row| println!("{}", line(row)));
+            let took = seconds(since.elapsed().as_secs_f64());
+            tell(format_args!("{} [{}; {took}]", case.name, case.source));
+            rows.iter().for_each(|row| tell(line(row)));
         }
     }
     if prints {
-        println!("{tally} in {}", seconds(begun.elapsed().as_secs_f64()));
+        tell(format_args!("{tally} in {}", seconds(begun.elapsed().as_secs_f64())));
     }
     tally.verdict()
 }

@@ -120,7 +120,8 @@ pub fn mesh_of(bytes: &[u8], scene: &Scene) -> Result<Mesh> {
     }
 }
 
-fn bytes(mesh: &MeshFile) -> Result<Vec<u8>> {
+/// The content of the .msh file.
+pub(super) fn bytes(mesh: &MeshFile) -> Result<Vec<u8>> {
     std::fs::read(&mesh.file).map_err(|error| Error::file(&mesh.file, format!("cannot be read: {error}")))
 }
 

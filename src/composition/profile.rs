@@ -51,14 +51,18 @@ pub enum Finest {
 /// [`Error::File`] when it cannot be read, [`Error::Scene`] with its line when its content is wrong.
 pub fn elevations(scene: &Scene, file: &Path) -> Result<Vec<f64>> {
     let Indenter::Sampled { file: name, .. } = &scene.indenter else { return Ok(Vec::new()) };
-    let path = file.parent().unwrap_or(Path::new("")).join(name);
-    let bytes = std::fs::read(&path).map_err(|error| {
-        Error::file(&path, format!("cannot be read: {error}; it is indenter.file of {}", file.display()))
-    })?;
     // Comments may be in any encoding.
-    let points = profilometer::parse(&String::from_utf8_lossy(&bytes))
+    let points = profilometer::parse(&String::from_utf8_lossy(&bytes(name, file)?))
         .map_err(|reason| Error::scene(file, "indenter.file", format!("{name:?}: {reason}")))?;
     Ok(points.iter().flat_map(|point| [point.x, point.height]).collect())
+}
+
+/// The content of the file `name` of elevations, beside the scene in `file`.
+pub(super) fn bytes(name: &str, file: &Path) -> Result<Vec<u8>> {
+    let path = file.parent().unwrap_or(Path::new("")).join(name);
+    std::fs::read(&path).map_err(|error| {
+        Error::file(&path, format!("cannot be read: {error}; it is indenter.file of {}", file.display()))
+    })
 }
 
 /// The profile of the scene in `file` over its contact face, with the [`elevations`] it needs. Under periodic sides every

@@ -49,20 +49,16 @@ mod tests {
     use super::*;
     use crate::element::plane::trials;
 
-    fn distorted() -> [Vector2<f64>; 4] {
-        [[0.1, -0.2], [1.3, 0.0], [1.1, 0.9], [-0.2, 0.7]].map(|p| Vector2::new(p[0], p[1]))
-    }
-
     #[test]
     fn exactly_three_rigid_body_modes() {
-        trials::exactly_three_rigid_body_modes(&distorted(), &stiffness(&distorted()));
+        trials::exactly_three_rigid_body_modes(&trials::distorted(), &stiffness(&trials::distorted()));
     }
 
     #[test]
     fn a_linear_field_is_exact() {
-        let u = trials::linear(&distorted(), &stiffness(&distorted()));
+        let u = trials::linear(&trials::distorted(), &stiffness(&trials::distorted()));
         let answer = |modulus| Answer { modulus, displacement: &u };
-        for stress in corner_stress(&distorted(), answer(trials::SHEAR), answer(trials::BULK)) {
+        for stress in corner_stress(&trials::distorted(), answer(trials::SHEAR), answer(trials::BULK)) {
             assert!((stress - trials::linear_stress()).norm() < 1e-14);
         }
     }

@@ -61,6 +61,11 @@ pub(crate) mod trials {
     pub const BULK: f64 = 3.0;
     const GRADIENT: Matrix2<f64> = Matrix2::new(0.3, -0.1, 0.7, 0.4);
 
+    /// A convex quadrilateral without parallel sides.
+    pub fn distorted() -> [Vector2<f64>; 4] {
+        [[0.1, -0.2], [1.3, 0.0], [1.1, 0.9], [-0.2, 0.7]].map(|p| Vector2::new(p[0], p[1]))
+    }
+
     /// The nodal values of a displacement field.
     pub fn field<const N: usize>(
         corners: &[Vector2<f64>],

@@ -63,6 +63,22 @@ impl Relaxing {
         rate * (self.ramp_strain(t) - self.ramp_strain(t - duration))
     }
 
+    /// The energies (J/m^3) at t under the same strain: in the springs, M_inst/2 [mu_0 e^2 + sum mu_i z_i^2], and lost in the
+    /// dashpots since t = 0, M_inst sum mu_i/tau_i times the integral of z_i^2. The spring of an arm is elongated by
+    /// z = rate tau (1 - exp(-t/tau)) while the strain grows, and by exp(-(t - duration)/tau) of what it was then on.
+    pub fn ramp_and_hold_energy(&self, rate: f64, duration: f64, t: f64) -> [f64; 2] {
+        let (grown, held) = (t.clamp(0.0, duration), (t - duration).max(0.0));
+        let mut stored = self.long_term() * (rate * grown).powi(2);
+        let mut lost = 0.0;
+        for &(weight, time) in &self.arms {
+            let end = -rate * time * (-grown / time).exp_m1();
+            let growing = grown + 2.0 * time * (-grown / time).exp_m1() - 0.5 * time * (-2.0 * grown / time).exp_m1();
+            stored += weight * (end * (-held / time).exp()).powi(2);
+            lost += weight * (rate * rate * time * growing - 0.5 * end * end * (-2.0 * held / time).exp_m1());
+        }
+        [0.5 * self.instantaneous * stored, self.instantaneous * lost]
+    }
+
     /// The creep compliance.
     ///
     /// With S(s) = s M(s) = M_inst [mu_0 + sum mu_i s tau_i/(1 + s tau_i)], J(s) = 1/(s S(s)): the retardation times
@@ -124,6 +140,23 @@ mod tests {
             let exact = (1.0 / 0.4 - (1.0 / 0.4 - 1.0) * (-t * 0.4 / 2.0).exp()) / 7.0;
             assert!((creep.at(t) / exact - 1.0).abs() < 1e-13);
         }
+    }
+
+    /// What is stored and lost at the end of a ramp is the work of the stress, by Simpson's rule; the hold does none.
+    #[test]
+    fn the_energy_of_a_ramp_is_its_work() {
+        let (material, rate, duration) = (solid(&[(0.2, 0.1), (0.3, 5.0), (0.25, 0.7)]), 0.3, 2.0);
+        let pieces = 1000;
+        let stress = |i: usize| material.ramp_and_hold(rate, duration, duration * i as f64 / pieces as f64);
+        let weight = |i: usize| if i == 0 || i == pieces { 1.0 } else { 2.0 + 2.0 * (i % 2) as f64 };
+        let sum: f64 = (0..=pieces).map(|i| weight(i) * stress(i)).sum();
+        let work = sum * rate * duration / (3.0 * pieces as f64);
+        for t in [duration, duration + 0.4, duration + 50.0] {
+            let [stored, lost] = material.ramp_and_hold_energy(rate, duration, t);
+            assert!(((stored + lost) / work - 1.0).abs() < 1e-9, "{stored} {lost} {work}");
+        }
+        let relaxed = 0.5 * 7.0 * 0.25 * (rate * duration).powi(2);
+        assert!((material.ramp_and_hold_energy(rate, duration, 500.0)[0] / relaxed - 1.0).abs() < 1e-12);
     }
 
     /// Relaxation and creep undo each other: the convolution integral of M(t - s) dJ(s) + M(t) J(0) is 1 at every t.

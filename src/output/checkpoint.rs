@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use super::recorder::scratch;
 use super::store::failed;
+use crate::checksum::checksum;
 use crate::error::{Error, Result};
 
 /// The number goes up when what a checkpoint holds changes its meaning.
@@ -122,11 +123,6 @@ fn decode(bytes: &[u8]) -> Option<Checkpoint> {
     };
     let fields = names.into_iter().zip(lengths).map(&mut list).collect::<Option<_>>()?;
     Some(Checkpoint { scene, started, fields })
-}
-
-/// FNV-1a, 64 bits.
-fn checksum(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |sum, &byte| (sum ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
 }
 
 fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {

@@ -73,6 +73,8 @@ pub struct Metadata {
     pub title: String,
     /// The resolved scene, whole, as TOML.
     pub scene: String,
+    /// The content of the files that the scene names; see [`crate::composition::inputs`].
+    pub inputs: String,
     /// Version of this program.
     pub version: String,
     /// The commit it was built from.

@@ -84,6 +84,8 @@ pub struct Left {
     pub status: String,
     /// Its resolved scene.
     pub scene: String,
+    /// The content of the files that the scene names, as far as it is known: former versions did not tell.
+    pub inputs: String,
     /// When it started.
     pub started: String,
 }
@@ -97,5 +99,6 @@ pub fn left(path: &Path) -> Result<Option<Left>> {
     }
     let results = Results::open(path)?;
     let text = |name| results.text(name);
-    Ok(Some(Left { status: text("status")?, scene: text("scene")?, started: text("started")? }))
+    let inputs = text("inputs").unwrap_or_default();
+    Ok(Some(Left { status: text("status")?, scene: text("scene")?, inputs, started: text("started")? }))
 }

@@ -60,6 +60,7 @@ fn write(path: &Path, metadata: &Metadata, plan: &Plan) -> hdf5::Result<()> {
 fn root_attributes(file: &hdf5::File, metadata: &Metadata) -> hdf5::Result<()> {
     text(file, "title", &metadata.title)?;
     text(file, "scene", &metadata.scene)?;
+    text(file, "inputs", &metadata.inputs)?;
     text(file, "mpjr_version", &metadata.version)?;
     text(file, "git_commit", &metadata.git_commit)?;
     text(file, "petsc_version", &metadata.petsc_version)?;

@@ -26,7 +26,9 @@ impl Session {
         let (universe, _) = mpi::initialize_with_threading(mpi::Threading::Funneled)
             .ok_or_else(|| Error::Internal("MPI could not be started".into()))?;
         refuse_stray(options)?;
-        let mut arguments = vec![c"mpjr".to_owned()];
+        // Taking PETSc's signal handlers off again would leave the system's defaults instead of what the process began
+        // with, and a reader of standard output that goes away would kill it.
+        let mut arguments = vec![c"mpjr".to_owned(), c"-no_signal_handler".to_owned()];
         for option in options {
             arguments.push(
                 CString::new(option.as_str()).map_err(|_| Error::Usage("a PETSc option holds a NUL byte".into()))?,
@@ -39,7 +41,6 @@ impl Session {
         // SAFETY: MPI runs; argv has `count` strings and a null; PETSc copies the options out of it.
         unsafe {
             check(ffi::PetscInitialize(&mut count, &mut vector, std::ptr::null(), std::ptr::null()))?;
-            check(ffi::PetscPopSignalHandler())?;
             check(ffi::PetscPushErrorHandler(Some(collect), std::ptr::null_mut()))?;
         }
         Ok(Self { universe, _arguments: arguments })

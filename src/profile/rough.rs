@@ -231,6 +231,7 @@ mod tests {
     /// How long the longest profile takes; run with --release --ignored --nocapture.
     #[test]
     #[ignore = "a measurement"]
+    #[allow(clippy::print_stdout)]
     fn time_to_make_and_to_evaluate() {
         for waves in [100, 1000, 4000, 10_000] {
             let clock = std::time::Instant::now();

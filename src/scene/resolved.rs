@@ -51,8 +51,14 @@ impl Scene {
         self.layer().filter(|layer| layer.sides == Sides::Periodic).map(|layer| layer.width)
     }
 
-    /// The same scene up to the end of its first `count` phases, without a title: what the state there depends on.
-    pub fn first_phases(&self, count: usize) -> Self {
+    /// The deepest approach of all phases, m; the tolerances of adaptive steps are relative to it.
+    pub fn deepest(&self) -> f64 {
+        self.phases.iter().filter_map(|phase| phase.approach).fold(0.0, f64::max)
+    }
+
+    /// The same scene up to the end of its first `count` phases, without a title: what the state there depends on; none
+    /// where the steps of these phases also depend on later ones.
+    pub fn first_phases(&self, count: usize) -> Option<Self> {
         let phases = self.phases[..count.min(self.phases.len())].to_vec();
         let end: f64 = phases.iter().map(|phase| phase.duration).sum();
         let near = phases.last().map_or(0.0, |last| 1e-9 * last.duration / last.expected_steps() as f64);
@@ -62,7 +68,7 @@ impl Scene {
             When::PhaseEnd(name) => part.phases.iter().any(|phase| phase.name == *name),
             When::Time(time) => *time <= end + near,
         });
-        part
+        (!part.is_adaptive() || part.deepest() == self.deepest()).then_some(part)
     }
 
     /// Moments that round-off put just after the end of the history are its end.

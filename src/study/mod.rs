@@ -137,12 +137,18 @@ pub struct Solver<'a> {
     subject: &'a Subject<'a>,
     done: Vec<(Scene, Option<Run>)>,
     tell: &'a dyn Fn(&str, Option<&Run>),
+    reason: String,
 }
 
 impl<'a> Solver<'a> {
     /// On all ranks of the subject. Each run is told to `tell`, with its changes.
     pub fn new(subject: &'a Subject<'a>, tell: &'a dyn Fn(&str, Option<&Run>)) -> Self {
-        Self { subject, done: Vec::new(), tell }
+        Self { subject, done: Vec::new(), tell, reason: String::new() }
+    }
+
+    /// Why the last run that gave up did so.
+    pub fn reason(&self) -> &str {
+        &self.reason
     }
 
     /// The run of the subject with changes; none where the solver gives up. The same on all ranks.
@@ -164,7 +170,10 @@ impl<'a> Solver<'a> {
                 let (steps, newton) = (counts.steps, counts.newton);
                 Some(Run { history: solution.history, steps, newton, seconds, memory })
             }
-            Err(Error::Solver(_) | Error::Domain(_)) => None,
+            Err(Error::Solver(reason) | Error::Domain(reason)) => {
+                self.reason = reason;
+                None
+            }
             Err(other) => return Err(other),
         };
         (self.tell)(&changes.join(" "), run.as_ref());

@@ -36,31 +36,52 @@ fn pressed(solid: Solid, [ramp, hold]: [usize; 2]) -> Setting {
     }
 }
 
-/// The mean pressure at time t of the ramp and hold: the oedometric modulus K + 4 G/3 under uniaxial strain, of which
-/// G relaxes, and K too where the Poisson ratio is constant. Force on 1 m.
-fn exact(solid: &Solid, t: f64) -> f64 {
+/// The oedometric modulus K + 4 G/3, Pa, under uniaxial strain: what of it relaxes, and what does not. G relaxes, and K
+/// too where the Poisson ratio is constant.
+fn moduli(solid: &Solid) -> (Relaxing, f64) {
     let Solid { shear, poisson, rule, arms } = solid;
     let bulk = 2.0 * shear * (1.0 + poisson) / (3.0 * (1.0 - 2.0 * poisson));
     let (relaxing, constant) = match rule {
         PoissonRule::ConstantRatio => (bulk + 4.0 / 3.0 * shear, 0.0),
         PoissonRule::ConstantBulkModulus => (4.0 / 3.0 * shear, bulk),
     };
-    let relaxing = Relaxing { instantaneous: relaxing, arms: arms.clone() };
+    (Relaxing { instantaneous: relaxing, arms: arms.clone() }, constant)
+}
+
+/// The mean pressure at time t of the ramp and hold. Force on 1 m.
+fn exact(solid: &Solid, t: f64) -> f64 {
+    let (relaxing, constant) = moduli(solid);
     relaxing.ramp_and_hold(APPROACH / RAMP, RAMP, t) + constant * APPROACH * (t / RAMP).min(1.0)
 }
 
-/// The exponential memory is exact for a displacement that is linear over each step: here, to the last digits but for
+/// The energies, J/m: in the springs, and dissipated in the arms. What does not relax stores all that it takes.
+fn exact_energy(solid: &Solid, t: f64) -> [f64; 2] {
+    let (relaxing, constant) = moduli(solid);
+    let [stored, dissipated] = relaxing.ramp_and_hold_energy(APPROACH / RAMP, RAMP, t);
+    [stored + 0.5 * constant * (APPROACH * (t / RAMP).min(1.0)).powi(2), dissipated]
+}
+
+/// The exponential memory is exact for a displacement that is linear over each step, and so are the energies of its arms:
+/// here, to the last digits but for
 /// the penalty, whose compliance of 1e-11 m/Pa stands in series with the layer's of 1e-4 to 1e-3 m/Pa.
 fn compression(rule: PoissonRule) -> Case {
     let setting = pressed(three_arms(rule), [4, 3]);
     let solid = setting.solid.clone();
     let compare = move |solutions: &[Solution]| {
         let why = "solver: 1e-10; penalty in series: 1e-11 m/Pa";
-        let [ramp, hold] = [0, 1].map(|phase| solutions[0].end_of(phase).normal_force);
-        Ok(vec![
-            Row::relative("N_z at the end of the ramp, N/m", [ramp, exact(&solid, RAMP)], 1e-7, why),
-            Row::relative("N_z at the end of the hold, N/m", [hold, exact(&solid, RAMP + HOLD)], 1e-7, why),
-        ])
+        let mut rows = Vec::new();
+        for (phase, end, t) in [(0, "ramp", RAMP), (1, "hold", RAMP + HOLD)] {
+            let row = solutions[0].end_of(phase);
+            let [stored, dissipated] = exact_energy(&solid, t);
+            for (quantity, values) in [
+                ("N_z at the end of the {end}, N/m", [row.normal_force, exact(&solid, t)]),
+                ("energy stored then, J/m", [row.energy.stored, stored]),
+                ("dissipated in the arms until then, J/m", [row.energy.viscoelastic_dissipation, dissipated]),
+            ] {
+                rows.push(Row::relative(quantity.replace("{end}", end), values, 1e-7, why));
+            }
+        }
+        Ok(rows)
     };
     let rule = match rule {
         PoissonRule::ConstantRatio => "constant Poisson ratio",

@@ -1,8 +1,10 @@
 //! Shared by the integration tests; each uses a part of it.
 #![allow(dead_code)]
 pub mod mpi;
+pub mod msh;
 pub mod program;
 pub mod sample;
+pub mod smallest;
 
 use std::path::{Path, PathBuf};
 

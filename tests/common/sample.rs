@@ -13,6 +13,7 @@ pub fn metadata() -> Metadata {
         title: "Größe m²".into(),
         // Longer than the 64 KiB that an attribute holds in place.
         scene: "title = \"x\" # ".to_owned() + &"é".repeat(100_000),
+        inputs: "mesh.file 0123456789abcdef\n".into(),
         version: "0.1.0".into(),
         git_commit: "abcdef".into(),
         petsc_version: "3.18.5".into(),

@@ -6,7 +6,7 @@ import h5py
 import numpy as np
 
 ROOT = {
-    "title": str, "scene": str, "mpjr_version": str, "git_commit": str, "petsc_version": str, "started": str,
+    "title": str, "scene": str, "inputs": str, "mpjr_version": str, "git_commit": str, "petsc_version": str, "started": str,
     "units": str, "status": str, "mpi_ranks": np.integer, "wall_seconds": np.floating,
 }
 HISTORY = """time phase approach sliding normal_force tangential_force hysteretic_force contact_fraction stick_fraction

@@ -10,6 +10,7 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
+use super::terminal::tell;
 use crate::error::{Error, Result};
 use crate::rheology::fit::{Residuals, Samples, Test, auto, identify, table, unknowns};
 use crate::rheology::{Band, Fractional};
@@ -175,7 +176,7 @@ pub fn run(args: &FitArgs) -> Result<()> {
             text += &format!("figure written to {}\n", file.display());
         }
     }
-    print!("{text}");
+    tell(text);
     Ok(())
 }
 

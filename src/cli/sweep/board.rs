@@ -10,6 +10,7 @@ use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use super::super::progress::terminal;
 use super::super::summary::seconds;
+use super::super::terminal::tell;
 use super::claim::{Told, told};
 use super::folder::{Folder, State};
 use crate::error::{Error, Result};
@@ -44,11 +45,11 @@ struct View {
 impl Board {
     /// Shows the `chosen` cases of the sweep.
     pub fn start(folder: &Folder, sweep: &Sweep, chosen: &[usize], run: &str) -> Result<Self> {
-        let is_done = |case: &usize| folder.state(*case, &sweep.cases[*case].scene) == State::Complete;
+        let is_done = |case: &usize| folder.state(sweep, *case) == State::Complete;
         let steps = |cases: &[usize]| cases.iter().map(|&case| sweep.cases[case].scene.steps()).sum();
         let done: Vec<usize> = chosen.iter().copied().filter(is_done).collect();
         if !done.is_empty() {
-            println!("{} of {} case(s) were complete before", done.len(), chosen.len());
+            tell(format_args!("{} of {} case(s) were complete before", done.len(), chosen.len()));
         }
         let mut view = View {
             folder: folder.clone(),
@@ -113,7 +114,7 @@ impl View {
     }
 
     fn tell_end(&mut self, case: usize) {
-        let state = self.folder.state(case, &self.sweep.cases[case].scene);
+        let state = self.folder.state(&self.sweep, case);
         let record = self.folder.record(case).unwrap_or_default();
         let reason = if record.reason.is_empty() { String::new() } else { format!(": {}", record.reason) };
         let line = format!(
@@ -130,7 +131,7 @@ impl View {
                 // A terminal that takes no line shows the bars only.
                 let _ = all.println(line);
             }
-            None => println!("{line}"),
+            None => tell(line),
         }
     }
 
@@ -148,9 +149,9 @@ impl View {
             if self.last_line.elapsed() >= LINE_EVERY {
                 self.last_line = Instant::now();
                 for (case, [done, steps]) in running {
-                    println!("case {case} ({}): {done}/{steps} steps", self.sweep.label(*case));
+                    tell(format_args!("case {case} ({}): {done}/{steps} steps", self.sweep.label(*case)));
                 }
-                println!("{total}");
+                tell(total);
             }
             return;
         };

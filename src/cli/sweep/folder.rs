@@ -5,9 +5,12 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
 
+use super::super::origin;
+use crate::checksum::checksum;
 use crate::error::{Error, Result};
 use crate::output::left;
-use crate::scene::{Scene, differences};
+use crate::scene::differences;
+use crate::scene::sweep::Sweep;
 
 /// The directory of a sweep.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,19 +91,16 @@ impl Folder {
 
     /// The result file of phases that cases share, whose scene is `scene`.
     pub fn shared(&self, scene: &str) -> PathBuf {
-        // FNV-1a, 64 bits; the scene itself is compared before the file is used.
-        let hash = scene
-            .bytes()
-            .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3));
-        self.shared_directory().join(format!("{hash:016x}.h5"))
+        // The scene itself is compared before the file is used.
+        self.shared_directory().join(format!("{:016x}.h5", checksum(scene.as_bytes())))
     }
 
-    /// What has become of a case whose scene is now `scene`.
-    pub fn state(&self, case: usize, scene: &Scene) -> State {
-        let here = scene.to_toml();
-        let record = self.record(case).filter(|record| differences(&record.scene, &here).is_empty());
+    /// What has become of a case of the sweep as it is now.
+    pub fn state(&self, sweep: &Sweep, case: usize) -> State {
+        let scene = &sweep.cases[case].scene;
+        let record = self.record(case).filter(|record| differences(&record.scene, &scene.to_toml()).is_empty());
         match left(&self.results(case)) {
-            Ok(Some(found)) if differences(&found.scene, &here).is_empty() => match (found.status.as_str(), record) {
+            Ok(Some(found)) if origin::is_of(&found, scene, &sweep.file) => match (found.status.as_str(), record) {
                 ("complete", _) => State::Complete,
                 ("not converged", None) => State::Failed(Record { exit: 3, ..Record::default() }),
                 (_, Some(record)) if record.exit != 0 && record.exit != 5 => State::Failed(record),

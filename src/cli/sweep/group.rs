@@ -144,7 +144,8 @@ impl Group {
         let begun = Instant::now();
         let (scene, out) = (&tasks.sweep.cases[case].scene, tasks.folder.results(case));
         // What a run that was stopped left; anything else is begun anew.
-        let can_resume = self.comm.rank() == 0 && matches!(origin::is_complete(&out, scene), Ok(false));
+        let can_resume =
+            self.comm.rank() == 0 && matches!(origin::is_complete(&out, scene, &tasks.sweep.file), Ok(false));
         let origin = match from.and_then(|from| tasks.shared(from)) {
             _ if any(&self.comm, can_resume) => Origin::Checkpoint,
             Some(shared) => Origin::Shared { results: &shared.results, phases: shared.phases },

@@ -22,6 +22,7 @@ use self::group::Group;
 pub(super) use self::summary::line;
 use self::tasks::Tasks;
 use super::interrupt::Interrupt;
+use super::terminal;
 use crate::composition::{Form, form};
 use crate::error::{Error, Result};
 use crate::parallel::{agree, any, share_text};
@@ -74,12 +75,13 @@ fn print(arguments: &SweepArguments) -> Result<()> {
     }
     if arguments.slurm {
         let ranks = arguments.ranks_per_case.map_or_else(|| ranks_per_case(&sweep), |ranks| ranks as usize);
-        print!("{}", slurm::script(&arguments.sweep, &out, sweep.cases.len(), ranks));
+        terminal::tell(slurm::script(&arguments.sweep, &out, sweep.cases.len(), ranks));
         return Ok(());
     }
     let folder = Folder::at(&out);
-    for (index, case) in sweep.cases.iter().enumerate() {
-        println!("{index:4}  {:13}  {}", folder.state(index, &case.scene).word(), sweep.label(index));
+    for index in 0..sweep.cases.len() {
+        let state = folder.state(&sweep, index).word();
+        terminal::tell(format_args!("{index:4}  {state:13}  {}", sweep.label(index)));
     }
     Ok(())
 }
@@ -137,7 +139,7 @@ const NAMED: usize = 3;
 fn tell((sweep, folder): (&Sweep, &Folder), chosen: &[usize], begun: Instant, stopped: bool) -> Result<()> {
     let (mut complete, mut failed) = (0, Vec::new());
     for &index in chosen {
-        match folder.state(index, &sweep.cases[index].scene) {
+        match folder.state(sweep, index) {
             folder::State::Complete => complete += 1,
             folder::State::Failed(record) => {
                 failed.push(format!("case {index} (exit code {}): {}", record.exit, record.reason))
@@ -147,7 +149,8 @@ fn tell((sweep, folder): (&Sweep, &Folder), chosen: &[usize], begun: Instant, st
     }
     let seconds = super::summary::seconds(begun.elapsed().as_secs_f64());
     let (total, directory) = (chosen.len(), folder.path().display());
-    println!("{complete} of {total} case(s) complete, {} failed, in {seconds}; {directory}/summary.csv", failed.len());
+    let counts = format!("{complete} of {total} case(s) complete, {} failed", failed.len());
+    terminal::tell(format_args!("{counts}, in {seconds}; {directory}/summary.csv"));
     if stopped && complete < total {
         return Err(Error::Stopped("stopped by a signal; start the same sweep again to go on with it".into()));
     }

@@ -32,7 +32,7 @@ pub fn write(sweep: &Sweep, folder: &Folder) -> Result<()> {
     let after = ["status", "exit_code", "reason", "wall_seconds"].into_iter().chain(FIGURES);
     let mut text = line(before.chain(after).map(str::to_owned));
     for (index, case) in sweep.cases.iter().enumerate() {
-        let state = folder.state(index, &case.scene);
+        let state = folder.state(sweep, index);
         let record = folder.record(index).unwrap_or_default();
         let (exit, reason) = match &state {
             State::Failed(record) => (record.exit.to_string(), record.reason.clone()),

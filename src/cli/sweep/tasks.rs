@@ -1,14 +1,15 @@
 //! What is still to be done of a sweep, and what a group does next.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use super::super::origin::is_of;
 use super::claim::Claim;
 use super::folder::{Folder, State};
 use crate::error::Result;
 use crate::output::{checkpoint, left};
+use crate::scene::Scene;
 use crate::scene::sweep::Sweep;
-use crate::scene::{Scene, differences};
 
 /// The cases of a sweep, seen by one group.
 pub struct Tasks<'a> {
@@ -52,7 +53,7 @@ impl<'a> Tasks<'a> {
     /// The `chosen` cases; those that failed before come last.
     pub fn new(sweep: &'a Sweep, folder: &'a Folder, chosen: &[usize], run: String) -> Self {
         let mut order: Vec<(usize, bool)> = chosen.iter().map(|&case| (case, false)).collect();
-        order.sort_by_key(|&(case, _)| matches!(folder.state(case, &sweep.cases[case].scene), State::Failed(_)));
+        order.sort_by_key(|&(case, _)| matches!(folder.state(sweep, case), State::Failed(_)));
         let (shared, of_case) = shared(sweep, folder);
         Self { sweep, folder, run, order, shared, of_case }
     }
@@ -84,12 +85,12 @@ impl<'a> Tasks<'a> {
             let mut from = None;
             if let Some(number) = self.of_case[case].filter(|_| !self.has_checkpoint(case)) {
                 let shared = &self.shared[number];
-                if shared.is_ready() {
+                if shared.is_ready(&self.sweep.file) {
                     from = Some(number);
                 } else if !shared.given_up && self.pending(shared) > 1 {
                     match Claim::take(&shared.results.with_extension("claim"), &self.run)? {
                         // Another group may have been faster between the two looks.
-                        Some(_) if shared.is_ready() => from = Some(number),
+                        Some(_) if shared.is_ready(&self.sweep.file) => from = Some(number),
                         Some(claim) => return Ok(Next::Shared { shared: number, claim }),
                         None => {
                             blocked = true;
@@ -109,7 +110,7 @@ impl<'a> Tasks<'a> {
     }
 
     fn state(&self, case: usize) -> State {
-        self.folder.state(case, &self.sweep.cases[case].scene)
+        self.folder.state(self.sweep, case)
     }
 
     /// Whether the case goes on from a state of its own.
@@ -133,24 +134,23 @@ impl<'a> Tasks<'a> {
 }
 
 impl Shared {
-    /// Whether the state at the end of the phases is there.
-    fn is_ready(&self) -> bool {
-        let same = |scene: &str| differences(scene, &self.scene.to_toml()).is_empty();
-        let complete = |path: &PathBuf| {
-            left(path).ok().flatten().is_some_and(|left| left.status == "complete" && same(&left.scene))
-        };
-        complete(&self.results) && checkpoint::beside(&self.results).exists()
+    /// Whether the state at the end of the phases is there; `file` is that of the scene.
+    fn is_ready(&self, file: &Path) -> bool {
+        let left = left(&self.results).ok().flatten();
+        let complete = left.is_some_and(|left| left.status == "complete" && is_of(&left, &self.scene, file));
+        complete && checkpoint::beside(&self.results).exists()
     }
 }
 
 /// For each case the longest beginning, short of the whole, that it shares with another.
 fn shared(sweep: &Sweep, folder: &Folder) -> (Vec<Shared>, Vec<Option<usize>>) {
-    let beginnings = |scene: &Scene| -> Vec<(usize, String)> {
-        (1..scene.phases.len()).rev().map(|count| (count, scene.first_phases(count).to_toml())).collect()
+    let beginnings = |scene: &Scene| -> Vec<(String, Scene, usize)> {
+        let first = |count| scene.first_phases(count).map(|part| (part.to_toml(), part, count));
+        (1..scene.phases.len()).rev().filter_map(first).collect()
     };
     let mut users: HashMap<String, usize> = HashMap::new();
     for case in &sweep.cases {
-        for (_, key) in beginnings(&case.scene) {
+        for (key, ..) in beginnings(&case.scene) {
             *users.entry(key).or_default() += 1;
         }
     }
@@ -158,10 +158,10 @@ fn shared(sweep: &Sweep, folder: &Folder) -> (Vec<Shared>, Vec<Option<usize>>) {
     let mut known: HashMap<String, usize> = HashMap::new();
     let mut of_case = Vec::with_capacity(sweep.cases.len());
     for (index, case) in sweep.cases.iter().enumerate() {
-        let longest = beginnings(&case.scene).into_iter().find(|(_, key)| users.get(key).is_some_and(|&n| n > 1));
-        of_case.push(longest.map(|(phases, key)| {
+        let longest = beginnings(&case.scene).into_iter().find(|(key, ..)| users.get(key).is_some_and(|&n| n > 1));
+        of_case.push(longest.map(|(key, scene, phases)| {
             let number = *known.entry(key).or_insert_with_key(|key| {
-                let (scene, results) = (case.scene.first_phases(phases), folder.shared(key));
+                let results = folder.shared(key);
                 list.push(Shared { scene, results, phases, cases: Vec::new(), given_up: false });
                 list.len() - 1
             });
