@@ -65,7 +65,7 @@ impl Monolithic {
         let gather = Gather::new(layout, &indices)?;
         let components =
             rows.iter().flat_map(|&(node, local)| [0, 1].map(|i| (2 * node + i as i32, local.map(|row| row + i))));
-        let inverse = Woodbury::new(body.comm(), components.collect(), layout)?;
+        let inverse = Woodbury::new(body.comm(), components.collect(), held.as_flattened().to_vec(), layout)?;
         Ok(Self {
             face: ContactFace::new(interface, gather, &held),
             bulk,

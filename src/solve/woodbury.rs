@@ -32,6 +32,8 @@ pub struct Woodbury {
     rows: Vec<(i32, Option<usize>)>,
     /// The components of the face in the order of their global rows.
     ascending: Vec<usize>,
+    /// Which of them are held: their columns of C are none.
+    held: Vec<bool>,
     base: Option<Base>,
     /// The contact at the last tangent; none = not factorised since.
     contact: Option<Factor>,
@@ -54,11 +56,16 @@ struct Base {
 
 impl Woodbury {
     /// Costs nothing until the first solve.
-    pub fn new(comm: &SimpleCommunicator, rows: Vec<(i32, Option<usize>)>, layout: &Vector) -> Result<Self> {
+    pub fn new(
+        comm: &SimpleCommunicator,
+        rows: Vec<(i32, Option<usize>)>,
+        held: Vec<bool>,
+        layout: &Vector,
+    ) -> Result<Self> {
         let mut ascending: Vec<usize> = (0..rows.len()).collect();
         ascending.sort_unstable_by_key(|&place| rows[place].0);
         let work = layout.like()?;
-        Ok(Self { comm: comm.duplicate(), rows, ascending, base: None, contact: None, work, done: [0; 2] })
+        Ok(Self { comm: comm.duplicate(), rows, ascending, held, base: None, contact: None, work, done: [0; 2] })
     }
 
     /// To be called when the contact's tangent has changed.
@@ -168,7 +175,9 @@ impl Woodbury {
             entries.resize(order * block.len(), 0.0);
             self.comm.process_at_rank(0).broadcast_into(&mut entries[..]);
             for (column, entries) in block.clone().zip(entries.chunks_exact(order)) {
-                base.compliance.set_column(column, &self.ascending, entries);
+                if !self.held[column] {
+                    base.compliance.set_column(column, &self.ascending, entries);
+                }
                 base.known[column] = true;
             }
             self.done[1] += block.len();
