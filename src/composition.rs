@@ -167,7 +167,10 @@ fn monolithic(
     }
     let integrator = integrator(comm, scene, Linear::Preconditioned, &mut tangent)?;
     let phases = phases(scene, clearance(scene, &mut interface)?);
-    let strategy = Box::new(Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?);
+    let mut strategy = Box::new(Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?);
+    if integrator.asks_for_solves()? {
+        strategy.starts_from_the_laws();
+    }
     Ok(Problem { strategy, tangent, u, phases, integrator, mesh })
 }
 

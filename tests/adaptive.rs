@@ -21,6 +21,7 @@ const CASES: &[Case] = &[
     Case::new("first_touch_and_moments", &[1], first_touch_and_moments),
     Case::new("sinusoids_are_resolved", &[1], sinusoids_are_resolved),
     Case::new("a_tolerance_out_of_reach", &[2], a_tolerance_out_of_reach),
+    Case::new("cuts_have_an_end", &[1], cuts_have_an_end),
 ];
 
 fn main() {
@@ -170,4 +171,20 @@ fn a_tolerance_out_of_reach(world: &SimpleCommunicator, _: &Path) {
         panic!("no solver error")
     };
     assert!(text.contains("give a larger tolerance, or steps") && text.contains("phase \"indent\""), "{text}");
+}
+
+/// Steps that Newton's method gives up on are cut no further than to 1e-10 of the time at the end of their phase, where
+/// eight cuts by four of the first step, of that length already, would go to 1.5e-15.
+fn cuts_have_an_end(world: &SimpleCommunicator, _: &Path) {
+    let scene = adaptive(1e-12, &["layer.cells=[16,4]"]);
+    let end = scene.phases[0].duration;
+    let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, .. } =
+        composition::build(world, &scene, Path::new("scene.toml")).unwrap();
+    integrator.set_max_newton(0).unwrap();
+    let mut ignored = Told::default();
+    let outcome = Driver::new(strategy.as_mut(), &mut ignored, &phases).run(&mut integrator, &mut tangent, &mut u);
+    let Err(Error::Solver(text)) = outcome else { panic!("no solver error") };
+    let (_, rest) = text.split_once("cut down to ").unwrap();
+    let shortest: f64 = rest.split(' ').next().unwrap().parse().unwrap();
+    assert!(shortest > 0.2e-10 * end, "{text}");
 }

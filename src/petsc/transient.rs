@@ -2,6 +2,7 @@
 
 mod callbacks;
 
+use std::ffi::CStr;
 use std::os::raw::c_void;
 use std::ptr::{null, null_mut};
 
@@ -75,8 +76,11 @@ pub enum Judgement {
     Retry(f64),
 }
 
+/// The type of a preconditioner that is the problem's own.
+const SHELL: &CStr = c"shell";
+
 /// The fraction of its length with which a step is tried again when Newton's method fails.
-const CUT: f64 = 0.25;
+pub const CUT: f64 = 0.25;
 
 /// Iterations of a Krylov method before the step is given up.
 const MOST_KRYLOV: i32 = 200;
@@ -198,7 +202,7 @@ impl Integrator {
             };
             check(ffi::KSPSetType(ksp, method.as_ptr()))?;
             check(ffi::KSPSetTolerances(ksp, reduction, -2.0, -2.0, MOST_KRYLOV))?;
-            check(ffi::PCSetType(pc, c"shell".as_ptr()))?;
+            check(ffi::PCSetType(pc, SHELL.as_ptr()))?;
             check(ffi::TSSetFromOptions(ts)).map_err(refused)?;
             if !shell {
                 let mut package = null();
@@ -212,6 +216,19 @@ impl Integrator {
                 check(ffi::PCFactorSetUpMatSolverType(pc)).map_err(refused)?;
             }
             Ok(integrator)
+        }
+    }
+
+    /// Whether linear systems are solved, or preconditioned, by the problem itself: PETSc options may choose otherwise.
+    pub fn asks_for_solves(&self) -> Result<bool> {
+        let (mut snes, mut ksp, mut pc, mut kind) = (null_mut(), null_mut(), null_mut(), null());
+        // SAFETY: places for handles, which stay TS's own, and for a name that lives as long as the preconditioner.
+        unsafe {
+            check(ffi::TSGetSNES(self.ts, &mut snes))?;
+            check(ffi::SNESGetKSP(snes, &mut ksp))?;
+            check(ffi::KSPGetPC(ksp, &mut pc))?;
+            check(ffi::PCGetType(pc, &mut kind))?;
+            Ok(!kind.is_null() && CStr::from_ptr(kind) == SHELL)
         }
     }
 

@@ -6,7 +6,7 @@ use super::adapt::{self, Controller};
 use super::{Observer, Report, TransientProblem, Work};
 use crate::error::{Error, Result};
 use crate::loading::{Adaptive, Phase, SHORTEST, Target};
-use crate::petsc::{Accepted, Attempt, Implicit, Integrator, Judgement, Matrix, Next, Step, Vector, Verdict};
+use crate::petsc::{Accepted, Attempt, CUT, Implicit, Integrator, Judgement, Matrix, Next, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 
 /// Newton iterations per attempt: from stick to slip under a sharp regularisation a step takes up to fifty.
@@ -174,7 +174,12 @@ impl<'a> Driver<'a> {
 
     /// The next step, of length `dt`, and how often it may be cut.
     fn attempt(&self, dt: f64) -> Attempt {
-        Attempt { now: self.now, dt, max_cuts: MAX_CUTS.min(MOST_CUTS - self.cuts.min(MOST_CUTS)) }
+        let phase = &self.phases[self.phase];
+        // Below that times are not told apart, or no step is tried for the sake of a tolerance.
+        let shortest = phase.end() * if phase.adaptive.is_some() { SHORTEST } else { f64::EPSILON };
+        let worthwhile = (dt / shortest).log(CUT.recip()).max(0.0) as usize;
+        let left = MOST_CUTS - self.cuts.min(MOST_CUTS);
+        Attempt { now: self.now, dt, max_cuts: MAX_CUTS.min(left).min(worthwhile) }
     }
 
     /// What the present phase says of its steps, and where the next of them that is planned ends.

@@ -25,6 +25,8 @@ pub struct Monolithic {
     base: Base,
     inverse: Woodbury,
     round_off: RoundOff,
+    /// Whether stiff laws are met by the guess, for which `inverse` factorises the bulk.
+    starts: bool,
     /// Whether the last guess met the laws.
     started: bool,
     /// Length of the step that the last tangent is for, s.
@@ -74,11 +76,18 @@ impl Monolithic {
             base: Base { dt: f64::NAN, diagonal: Vec::new(), coupling: Vec::new() },
             inverse,
             round_off: RoundOff { dt: f64::NAN, stiffness: layout.like()?, product: layout.like()?, force: 0.0 },
+            starts: false,
             started: false,
             dt: f64::NAN,
             tolerance,
             recoveries: 0,
         })
+    }
+
+    /// Lets guesses meet laws that are too stiff for Newton's method. That takes the factor of the bulk, so only where it is
+    /// made for the linear systems anyway.
+    pub fn starts_from_the_laws(&mut self) {
+        self.starts = true;
     }
 
     /// Makes `u`, the accepted state, a start at which the tractions meet the laws.
@@ -196,7 +205,7 @@ impl TransientProblem for Monolithic {
 
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
         self.started = false;
-        if self.inverse.serves() && 2 * self.rows.len() <= LARGE_FACE {
+        if self.starts && 2 * self.rows.len() <= LARGE_FACE {
             self.round_off.prepare(&mut self.bulk, step.dt)?;
             let stiffness = self.face.gather(&self.round_off.stiffness)?;
             // At a node with its neighbours held, which is stiffer than the body.

@@ -73,11 +73,6 @@ impl Woodbury {
         self.contact = None;
     }
 
-    /// Whether it was asked to solve: else another solver is in use, and no factor is to be made.
-    pub fn serves(&self) -> bool {
-        self.base.is_some()
-    }
-
     /// C and l at step length `dt`, all of C. Collective.
     pub fn compliance(&mut self, bulk: &Bulk, dt: f64) -> Result<Option<(&Compliance, f64)>> {
         self.factorise(bulk, dt)?;

@@ -57,7 +57,7 @@ fn random_gauss_scenes(world: &SimpleCommunicator, _: &Path) {
     random(world, "gauss", 120);
 }
 
-/// The same by the monolithic strategy; found: 97.4 % of 500.
+/// The same by the monolithic strategy; found: 98.4 % of 500.
 fn random_monolithic_scenes(world: &SimpleCommunicator, _: &Path) {
     random(world, "monolithic", 70);
 }
@@ -109,9 +109,12 @@ fn keeps_the_laws(sample: &Sample, solution: &Solution) -> std::result::Result<(
         }
     }
     for (phase, end) in solution.ends.iter().enumerate() {
+        // Multipliers leave separations up to their tolerance, 1e-5 of the displacement of the face.
+        let moved = end.displacement_z.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+        let open = if sample.choice.method == "augmented" { 1e-5 * moved } else { 0.0 };
         for (node, ((p, q), gap)) in end.pressure.iter().zip(&end.shear).zip(&end.gap).enumerate() {
             let known = p.is_finite() && q.is_finite() && gap.is_finite();
-            if !known || *p < 0.0 || q.abs() > f * p || (*gap > 0.0 && *p != 0.0) {
+            if !known || *p < 0.0 || q.abs() > f * p || (*gap > open && *p != 0.0) {
                 return Err(format!("node {node}: p = {p:e}, q = {q:e}, gap = {gap:e}"));
             }
         }

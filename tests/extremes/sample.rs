@@ -152,6 +152,8 @@ impl Sample {
     /// The scene, in units where the wavelength is `length` m, E is `modulus` Pa and relaxation times are of `time` s.
     pub fn scene(&self, length: f64, modulus: f64, time: f64) -> String {
         let Sample { poisson, depth, cells, rule, memory, sides, .. } = self;
+        // Multipliers have no end on a clamped end of the face, and are refused there.
+        let sides = if *sides == "fixed" && self.choice.method == "augmented" { "roller" } else { sides };
         let height = self.depth / cells[1] as f64;
         let (amplitude, speed) = (self.amplitude * length, self.velocity * length / time);
         let profile = match self.profile {
