@@ -17,6 +17,8 @@ use crate::snapshot::Snapshot;
 pub struct ContactFace {
     interface: Interface,
     gather: Gather,
+    /// The first local row of each face node in a solution vector, where this rank owns it.
+    rows: Vec<Option<usize>>,
     /// 0 for the held components of each face node, 1 for the free ones.
     free: Vec<Vector2<f64>>,
     phase: Option<Phase>,
@@ -42,8 +44,9 @@ struct State {
 }
 
 impl ContactFace {
-    /// At rest. `gather` brings x, z of each face node out of a solution vector; `held` says which of them are held.
-    pub fn new(interface: Interface, gather: Gather, held: &[[bool; 2]]) -> Self {
+    /// At rest. `gather` brings x, z of each face node out of a solution vector, where they are in the local `rows`; `held`
+    /// says which of them are held.
+    pub fn new(interface: Interface, gather: Gather, rows: Vec<Option<usize>>, held: &[[bool; 2]]) -> Self {
         let at_rest = || State { surface: Surface::at_rest(held.len()), placement: Placement::default(), scale: 0.0 };
         Self {
             accepted: at_rest(),
@@ -51,6 +54,7 @@ impl ContactFace {
             free: held.iter().map(|[x, z]| Vector2::new(f64::from(!x), f64::from(!z))).collect(),
             interface,
             gather,
+            rows,
             phase: None,
             residual: Residual::new(),
             tangent: Tangent::default(),
@@ -113,13 +117,19 @@ impl ContactFace {
         Ok(())
     }
 
-    /// Where Newton's method had better begin than at the accepted displacements: what to add to them, m, for each node
-    /// of the face. What is behind the face need not be predicted, because it is linear.
+    /// Takes `u`, the accepted state, to where Newton's method had better begin. What is behind the face need not be
+    /// predicted, because it is linear.
     ///
     /// Within a phase the face goes on as it did, and nodes of which friction expects a slip rate go with the indenter
     /// at that. Not so where the indenter goes so far in the step that all will slip anyway: ten times what the drag, f
     /// of the pressure, displaces by the measure of what the pressure does.
-    pub fn prediction(&mut self, step: Step) -> Result<Vec<Vector2<f64>>> {
+    pub fn predict(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        let prediction = self.prediction(step)?;
+        self.add(prediction.into_iter().enumerate(), u)
+    }
+
+    /// What [`Self::predict`] adds to each node of the face, m.
+    fn prediction(&mut self, step: Step) -> Result<Vec<Vector2<f64>>> {
         let phase = self.phase()?;
         // A quarter of the step, against round-off: the one before was half as long or longer.
         let goes_on = if step.t - 1.25 * step.dt > phase.start { step.dt } else { 0.0 };
@@ -160,18 +170,33 @@ impl ContactFace {
         self.interface.stations(placement, &self.accepted.surface)
     }
 
-    /// What to add to the displacements of nodes of the face, m, that a Newton step takes from `u` to `u` -
-    /// `decrement`, so that friction is not overrun.
-    pub fn limit(&mut self, step: Step, u: &Vector, decrement: &Vector) -> Result<Vec<(usize, Vector2<f64>)>> {
+    /// Bends the Newton step from `u` to `u` - `decrement` at the nodes of the face where it overruns friction; whether
+    /// there were any.
+    pub fn limit(&mut self, step: Step, u: &Vector, decrement: &mut Vector) -> Result<bool> {
         if self.interface.friction().is_none() {
-            return Ok(Vec::new());
+            return Ok(false);
         }
         let (from, less) = (self.gather(u)?, self.gather(decrement)?);
         let from = self.surface_at(step, from);
         let to = from.displacement.iter().zip(&less).map(|(u, less)| u - less).collect();
         let to = self.surface_at(step, to);
         let placement = self.placement(step)?;
-        self.interface.limit(placement, [&from, &to])
+        let limits = self.interface.limit(placement, [&from, &to])?;
+        self.add(limits.iter().map(|&(node, increment)| (node, -increment)), decrement)?;
+        Ok(!limits.is_empty())
+    }
+
+    /// Adds to x, z of nodes of the face in a vector like the solution. On all ranks: PETSc keeps norms until it sees a
+    /// vector written to, on each rank for itself.
+    pub fn add(&self, increments: impl Iterator<Item = (usize, Vector2<f64>)>, to: &mut Vector) -> Result<()> {
+        let mut values = to.view_mut()?;
+        for (node, increment) in increments {
+            if let Some(row) = self.rows[node] {
+                values[row] += increment.x;
+                values[row + 1] += increment.y;
+            }
+        }
+        Ok(())
     }
 
     /// Whether the first guess was within the noise, so that a Newton step from it could only add to that.

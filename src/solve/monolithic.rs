@@ -69,7 +69,7 @@ impl Monolithic {
             rows.iter().flat_map(|&(node, local)| [0, 1].map(|i| (2 * node + i as i32, local.map(|row| row + i))));
         let inverse = Woodbury::new(body.comm(), components.collect(), held.as_flattened().to_vec(), layout)?;
         Ok(Self {
-            face: ContactFace::new(interface, gather, &held),
+            face: ContactFace::new(interface, gather, rows.iter().map(|&(_, local)| local).collect(), &held),
             bulk,
             body,
             rows,
@@ -164,14 +164,7 @@ impl TransientProblem for Monolithic {
         self.face.set_scale(self.face.contact_norm());
         self.bulk.force(step, u, rate, f)?;
         self.round_off.take(&mut self.bulk, step.dt, u)?;
-        let mut values = f.view_mut()?;
-        for (force, &(_, local)) in self.face.residual.iter().zip(&self.rows) {
-            if let Some(row) = local {
-                values[row] += force.x;
-                values[row + 1] += force.y;
-            }
-        }
-        Ok(())
+        self.face.add(self.face.residual.iter().copied().enumerate(), f)
     }
 
     fn tangent(&mut self, step: Step, u: &Vector, rate: &Vector, tangent: &mut Matrix) -> Result<()> {
@@ -214,36 +207,21 @@ impl TransientProblem for Monolithic {
                 return self.start(step, u);
             }
         }
-        let prediction = self.face.prediction(step)?;
-        let mut values = u.view_mut()?;
-        for (increment, &(_, local)) in prediction.iter().zip(&self.rows) {
-            if let Some(row) = local {
-                values[row] += increment.x;
-                values[row + 1] += increment.y;
-            }
-        }
-        Ok(())
+        self.face.predict(step, u)
     }
 
     fn limit(&mut self, step: Step, u: &Vector, decrement: &mut Vector) -> Result<bool> {
-        let limits = self.face.limit(step, u, decrement)?;
-        let mut values = decrement.view_mut()?;
-        for (node, increment) in &limits {
-            if let (_, Some(row)) = self.rows[*node] {
-                values[row] -= increment.x;
-                values[row + 1] -= increment.y;
-            }
-        }
-        Ok(!limits.is_empty())
+        self.face.limit(step, u, decrement)
     }
 
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
-        let noise = self.round_off.force + self.face.noise();
+        let round_off = self.round_off.force;
+        let noise = |face: &ContactFace| round_off + face.noise();
         // There is nothing to be gained from the linear system there.
-        if self.started && iteration == 0 && norm <= noise {
+        if self.started && iteration == 0 && norm <= noise(&self.face) {
             return Verdict::Converged;
         }
-        self.face.test(iteration, norm, self.tolerance, |_| noise)
+        self.face.test(iteration, norm, self.tolerance, noise)
     }
 
     fn departure(&mut self, step: Step, u: &Vector) -> Result<f64> {

@@ -46,15 +46,17 @@ impl Interior {
     /// The fields of the body for given displacements and effective displacements (mu_0 u + sum mu_i z_i; none = the
     /// displacements) of the face: x, z of each node, m, the same on all ranks.
     pub fn fields(&mut self, displacement: &[f64], effective: Option<&[f64]>) -> Result<BulkFields> {
-        if self.recovery.is_none() {
-            let body = Body::new(self.comm.duplicate(), self.solid.clone())?;
-            let extension = match &self.column {
-                Some(column) => Extension::Waves(Below::new(column)?),
-                None => Extension::Sparse(Inner::new(&body)?),
-            };
-            self.recovery = Some((body, extension));
-        }
-        let Some((body, extension)) = &mut self.recovery else { return Ok(BulkFields::default()) };
+        let (body, extension) = match &mut self.recovery {
+            Some(recovery) => recovery,
+            place => {
+                let body = Body::new(self.comm.duplicate(), self.solid.clone())?;
+                let extension = match &self.column {
+                    Some(column) => Extension::Waves(Below::new(column)?),
+                    None => Extension::Sparse(Inner::new(&body)?),
+                };
+                place.insert((body, extension))
+            }
+        };
         let u = extension.extend(displacement, body)?;
         let around = match effective {
             Some(effective) => body.around(&extension.extend(effective, body)?)?,

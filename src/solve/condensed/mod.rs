@@ -101,8 +101,10 @@ impl<B: Backing> Condensed<B> {
     /// At rest. `layout` has x, z of each face node on rank 0; `tolerance` is relative to the contact forces.
     pub fn new(interface: Interface, backing: B, layout: &Vector, held: &[[bool; 2]], tolerance: f64) -> Result<Self> {
         let indices: Vec<i32> = (0..2 * held.len() as i32).collect();
+        // Only rank 0 has values.
+        let rows = (0..held.len()).map(|node| (layout.local_len() > 0).then_some(2 * node)).collect();
         Ok(Self {
-            face: ContactFace::new(interface, Gather::new(layout, &indices)?, held),
+            face: ContactFace::new(interface, Gather::new(layout, &indices)?, rows, held),
             backing,
             tolerance,
             columns: SparseColumns::default(),
@@ -239,12 +241,7 @@ impl<B: Backing> TransientProblem for Condensed<B> {
         if self.face.is_stiff(step, self.backing.softness() / self.backing.secant())? {
             return self.start(step, u);
         }
-        let prediction = self.face.prediction(step)?;
-        // Only rank 0 has values.
-        for (value, increment) in u.view_mut()?.iter_mut().zip(prediction.iter().flatten()) {
-            *value += increment;
-        }
-        Ok(())
+        self.face.predict(step, u)
     }
 
     fn limit(&mut self, step: Step, u: &Vector, decrement: &mut Vector) -> Result<bool> {
@@ -252,15 +249,7 @@ impl<B: Backing> TransientProblem for Condensed<B> {
             decrement.set(0.0)?;
             return Ok(true);
         }
-        let limits = self.face.limit(step, u, decrement)?;
-        let mut values = decrement.view_mut()?;
-        for (node, increment) in &limits {
-            // Only rank 0 has values.
-            if let Some([x, z]) = values.as_chunks_mut().0.get_mut(*node) {
-                (*x, *z) = (*x - increment.x, *z - increment.y);
-            }
-        }
-        Ok(!limits.is_empty())
+        self.face.limit(step, u, decrement)
     }
 
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {

@@ -90,7 +90,7 @@ impl<'a> Tractions<'a> {
     /// None yet.
     fn new(stations: Vec<Station>, law: Option<Friction>, behind: Behind<'a>, free: Vec<f64>) -> Self {
         Self {
-            own: stations.iter().map(|station| station.own(behind)).collect(),
+            own: stations.iter().map(|station| station.influence(station, behind)).collect(),
             places: (0..free.len()).collect(),
             values: vec![Vector2::zeros(); stations.len()],
             u: free.clone(),

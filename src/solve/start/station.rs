@@ -19,11 +19,6 @@ impl Station {
         self.point.nodes.into_iter().zip(self.point.shape).filter(|(_, share)| *share != 0.0)
     }
 
-    /// D, m/Pa.
-    pub(super) fn own(&self, behind: Behind<'_>) -> Matrix2<f64> {
-        self.influence(self, behind)
-    }
-
     /// The motion here under a unit traction there, m/Pa, in (t, n).
     pub(super) fn influence(&self, other: &Self, (compliance, secant): Behind<'_>) -> Matrix2<f64> {
         let mut sum = Matrix2::zeros();
