@@ -12,6 +12,7 @@ pub mod energy;
 pub mod error;
 pub mod expression;
 pub mod friction;
+pub mod input;
 pub mod interface;
 pub mod loading;
 pub mod mesh;

@@ -350,3 +350,19 @@ fn default_output_is_in_the_current_directory() {
     assert_eq!(names(elsewhere.path()), ["scene.h5"]);
     assert_eq!(names(Path::new(&run.directory())), ["scene.toml"]);
 }
+
+/// A pipe that nobody writes to would never open, and `/dev/zero` would never end.
+#[test]
+fn what_is_no_regular_file_is_refused_as_such() {
+    let directory = tempfile::tempdir().unwrap();
+    let pipe = directory.path().join("pipe");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let pipe = pipe.to_str().unwrap();
+    for (file, what) in [(pipe, "a pipe"), ("/dev/zero", "a device")] {
+        for arguments in [vec!["check", file], vec!["fit", file], vec!["plot", file], vec!["sweep", file]] {
+            let outcome = mpjr(1, &arguments);
+            assert_eq!(outcome.code, 4, "{arguments:?} {}", outcome.stderr);
+            outcome.assert_single_message(&format!("{file}: cannot be read: it is {what}, not a regular file"));
+        }
+    }
+}

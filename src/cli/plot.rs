@@ -8,6 +8,7 @@ use toml::Table;
 use super::fit::PowerLaw;
 use super::terminal::{tell, warn};
 use crate::error::{Error, Result};
+use crate::input;
 use crate::plot::Sheet;
 use crate::plot::material::{self, Solid};
 use crate::plot::results::{self, Run};
@@ -122,7 +123,7 @@ fn of_materials(arguments: &PlotArguments) -> Result<Vec<Drawing>> {
 
 /// The `[material]` table of a file, read as that of a scene is.
 fn read_material(file: &Path) -> Result<scene::Material> {
-    let text = std::fs::read_to_string(file).map_err(|error| Error::file(file, error))?;
+    let text = input::text(file)?;
     let mut table = scene::parse(&text, file)?;
     if !table.contains_key("material") {
         return Err(Error::scene(file, "material", "missing; a material file, or a scene, has a [material] table"));

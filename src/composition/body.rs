@@ -8,6 +8,7 @@ use mpi::topology::SimpleCommunicator;
 use crate::bulk::{Bulk, Part, Series};
 use crate::element::Quadrilateral;
 use crate::error::{Error, Result};
+use crate::input;
 use crate::mesh::gmsh::{self, Flaw, Role, Roles};
 use crate::mesh::{Cell, Layer, Mesh, Sides};
 use crate::parallel::agree;
@@ -122,7 +123,7 @@ pub fn mesh_of(bytes: &[u8], scene: &Scene) -> Result<Mesh> {
 
 /// The content of the .msh file.
 pub(super) fn bytes(mesh: &MeshFile) -> Result<Vec<u8>> {
-    std::fs::read(&mesh.file).map_err(|error| Error::file(&mesh.file, format!("cannot be read: {error}")))
+    input::bytes(&mesh.file)
 }
 
 fn layer_mesh(layer: &scene::Layer, scene: &Scene) -> Mesh {

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::{Stretch, phases};
 use crate::error::{Error, Result};
 use crate::expression::Expression;
+use crate::input;
 use crate::loading::{Phase, Placement};
 use crate::profile::{
     Circle, Formula, Harmonic, Parabola, Point, Profile, Repeated, Rms, Rough, Roughness, Sampled, Survey, Wedge,
@@ -60,8 +61,11 @@ pub fn elevations(scene: &Scene, file: &Path) -> Result<Vec<f64>> {
 /// The content of the file `name` of elevations, beside the scene in `file`.
 pub(super) fn bytes(name: &str, file: &Path) -> Result<Vec<u8>> {
     let path = file.parent().unwrap_or(Path::new("")).join(name);
-    std::fs::read(&path).map_err(|error| {
-        Error::file(&path, format!("cannot be read: {error}; it is indenter.file of {}", file.display()))
+    input::bytes(&path).map_err(|error| match error {
+        Error::File { file: path, reason } => {
+            Error::File { file: path, reason: format!("{reason}; it is indenter.file of {}", file.display()) }
+        }
+        other => other,
     })
 }
 

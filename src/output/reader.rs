@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use hdf5::types::VarLenUnicode;
 
 use crate::error::{Error, Result};
+use crate::input;
 
 /// A result file open for reading.
 #[derive(Debug)]
@@ -33,13 +34,14 @@ impl Field {
 
 /// Whether this program wrote the file at `path`.
 pub fn is_ours(path: &Path) -> bool {
-    hdf5::File::open(path).and_then(|file| file.attr("mpjr_version")).is_ok()
+    input::regular(path).is_ok() && hdf5::File::open(path).and_then(|file| file.attr("mpjr_version")).is_ok()
 }
 
 impl Results {
     /// Opens a file that this program wrote.
     pub fn open(path: &Path) -> Result<Self> {
         // The system's words on a file that is missing or may not be read are plainer than the library's.
+        input::regular(path)?;
         std::fs::File::open(path).map_err(|error| Error::file(path, error))?;
         let file = hdf5::File::open(path).map_err(|error| {
             Error::file(path, format!("is not an HDF5 file that can be read ({})", super::plain(&error)))

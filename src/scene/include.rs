@@ -7,6 +7,7 @@ use toml::{Table, Value};
 use super::keys::{self, Section};
 use super::read::{self, material};
 use crate::error::{Error, Result};
+use crate::input;
 
 /// How the text of a file is come by: on one process by opening it, on several from the one that did.
 pub type Load<'a> = &'a dyn Fn(&Path) -> Result<String>;
@@ -27,7 +28,7 @@ pub fn include(table: &mut Table, file: &Path, load: Load) -> Result<()> {
 
 /// The text of a file, opened by this process.
 pub fn open(file: &Path) -> Result<String> {
-    std::fs::read_to_string(file).map_err(|error| Error::file(file, format!("cannot be read: {error}")))
+    input::text(file)
 }
 
 /// The series is what a file is for: beside `file` these would leave nothing of it.

@@ -12,6 +12,7 @@ use clap::{Args, ValueEnum};
 
 use super::terminal::tell;
 use crate::error::{Error, Result};
+use crate::input;
 use crate::rheology::fit::{Residuals, Samples, Test, auto, identify, table, unknowns};
 use crate::rheology::{Band, Fractional};
 
@@ -204,7 +205,7 @@ fn sample_law(young: Fractional, args: &FitArgs) -> Result<Source> {
 }
 
 fn read(file: &Path, args: &FitArgs) -> Result<Source> {
-    let bytes = std::fs::read(file).map_err(|error| Error::file(file, error))?;
+    let bytes = input::bytes(file)?;
     let text = std::str::from_utf8(&bytes).map_err(|error| {
         let line = 1 + bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count();
         Error::scene(file, format!("line {line}"), "this is not text in UTF-8")
