@@ -4,17 +4,21 @@
 //   gmsh -2 -format msh41 half_disk.geo -o half_disk.msh
 //
 // -setnumber n 2 halves the cells everywhere (3 and so on likewise).
+//
+// half_plane.msh, whose arc is so far that it does not matter:
+//
+//   gmsh -2 -format msh41 half_disk.geo -setnumber radius 100 -setnumber out 44 -o half_plane.msh
 
 DefineConstant[
   n = 1,          // refinement
   radius = 5.0,   // of the half disk
   width = 0.03,   // half the width of the box
-  depth = 0.024   // of the box
+  depth = 0.024,  // of the box
+  out = 30 * n    // cells from the box to the arc
 ];
 
 along = 40 * n;   // cells of the box along the face (even)
 down = 16 * n;    // and down
-out = 30 * n;     // from the box to the arc
 growth = 1.24 ^ (1 / n);
 angle = 40 * Pi / 180;   // of the arc that belongs to a side of the box
 

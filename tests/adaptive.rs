@@ -28,22 +28,22 @@ fn main() {
     common::mpi::main(CASES);
 }
 
-/// The layer of the paper's study on few cells, pressed, brought to slip and slid.
-fn paper(overrides: &[&str]) -> Scene {
-    let coarse = ["layer.cells=[32,32]"].iter().chain(overrides).map(|&set| set.to_owned()).collect();
-    let source = Source { file: "paper-layer.toml".into(), overrides: coarse };
-    scene::read(include_str!("../runs/paper-layer.toml"), &source).unwrap()
+/// The layer of the presets on few cells, pressed, brought to slip and slid.
+fn layer(overrides: impl IntoIterator<Item = String>) -> Scene {
+    let overrides = std::iter::once("layer.cells=[32,32]".to_owned()).chain(overrides).collect();
+    scene::read(include_str!("../runs/presets.toml"), &Source { file: "presets.toml".into(), overrides }).unwrap()
+}
+
+/// In 3200 equal steps, unless the overrides say otherwise.
+fn equal(overrides: &[&str]) -> Scene {
+    let steps = ["phase.indent.steps=100", "phase.onset.steps=100", "phase.slide.steps=3000"];
+    layer(steps.iter().chain(overrides).map(|&set| set.to_owned()))
 }
 
 /// The same with the steps of each phase chosen by a tolerance.
 fn adaptive(tolerance: f64, overrides: &[&str]) -> Scene {
-    let text = include_str!("../runs/paper-layer.toml");
-    let steps = |line: &str| line.starts_with("steps = ");
-    let lines =
-        text.lines().map(|line| if steps(line) { format!("tolerance = {tolerance:e}") } else { line.to_owned() });
-    let coarse = ["layer.cells=[32,32]"].iter().chain(overrides).map(|&set| set.to_owned()).collect();
-    let source = Source { file: "paper-layer.toml".into(), overrides: coarse };
-    scene::read(&lines.collect::<Vec<_>>().join("\n"), &source).unwrap()
+    let each = |phase: &str| format!("phase.{phase}.tolerance={tolerance:e}");
+    layer(["indent", "onset", "slide"].map(each).into_iter().chain(overrides.iter().map(|&set| set.to_owned())))
 }
 
 /// The largest differences of N, Q and the hysteretic force from a finer history.
@@ -52,7 +52,7 @@ fn apart(coarse: &Solution, fine: &Solution) -> [f64; 3] {
     [normal, tangential, hysteretic]
 }
 
-/// The scene of the paper's study with its 3200 equal steps, of which the onset of slip has 100: adaptive steps come to
+/// The layer of the presets in 3200 equal steps, of which the onset of slip has 100: adaptive steps come to
 /// a smaller error (the largest of those of N, Q and the hysteretic force) with less than a third of them, the rejected
 /// attempts counted. The
 /// reference resolves every moment (its tolerance is a fiftieth); that it is right, equal steps say, which come
@@ -60,9 +60,9 @@ fn apart(coarse: &Solution, fine: &Solution) -> [f64; 3] {
 /// the reference.
 fn a_third_of_the_steps(world: &SimpleCommunicator, _: &Path) {
     let reference = solve(world, &adaptive(2e-6, &[])).unwrap();
-    let equal = solve(world, &paper(&[])).unwrap();
+    let equal = solve(world, &equal(&[])).unwrap();
     let twice = ["phase.indent.steps=200", "phase.onset.steps=200", "phase.slide.steps=6000"];
-    let finer = apart(&solve(world, &paper(&twice)).unwrap(), &reference);
+    let finer = apart(&solve(world, &equal(&twice)).unwrap(), &reference);
     let adaptive = solve(world, &adaptive(7e-5, &[])).unwrap();
     let [off_equal, off_adaptive] = [&equal, &adaptive].map(|run| apart(run, &reference));
     let [steps_equal, attempts] = [equal.counts.steps, adaptive.counts.steps + adaptive.counts.rejected];

@@ -171,6 +171,21 @@ fn adaptive_cases(deepest: f64, shared: usize) {
     assert_eq!(shared_runs(&out), shared);
 }
 
+/// Blocks that vary one after the other: 2 x 2 and 1 x 1 cases, numbered through.
+#[test]
+fn blocks_come_one_after_the_other() {
+    let block = |penalties: &str, velocities: &str| {
+        format!("[[vary]]\n\"contact.penalty\" = {penalties}\n\"phase.slide.velocity\" = {velocities}\n")
+    };
+    let blocks = block("[1e6, 2e6]", "[0.01, 0.1]") + &block("[3e6]", "[1.0]");
+    let (_directory, out) = prepare(&format!("scene = \"scene.toml\"\n{blocks}"));
+    output_of(&mut sweep(program(1), &out, &[]));
+    let rows = summary(&out);
+    assert_eq!(rows[0][3..5], ["contact.penalty", "phase.slide.velocity"], "{rows:?}");
+    let varied: Vec<[f64; 2]> = rows[1..].iter().map(|row| [3, 4].map(|i| row[i].parse().unwrap())).collect();
+    assert_eq!(varied, [[1e6, 0.01], [1e6, 0.1], [2e6, 0.01], [2e6, 0.1], [3e6, 1.0]]);
+}
+
 /// Results of a profile whose file has changed since are not those of the sweep.
 #[test]
 fn a_file_that_has_changed_makes_its_cases_anew() {
@@ -290,6 +305,10 @@ fn bad_sweeps_are_refused() {
             "vary: missing; give the keys that vary, such as \"phase.slide.velocity\" = [0.01, 0.1]",
         ),
         (vary(""), "vary: is empty; give the keys that vary, such as \"phase.slide.velocity\" = [0.01, 0.1]"),
+        (
+            format!("{}[[vary]]\n\"layer.width\" = [1]\n", vary("\"layer.depth\" = [1]").replace("[vary]", "[[vary]]")),
+            "vary.1: must vary the keys of the first [[vary]]: layer.depth",
+        ),
         (vary("\"layer.depth\" = []"), "vary.layer.depth: is empty; give at least one value"),
         (vary("\"layer.depth\" = 2"), "vary.layer.depth: must be an array of values, got 2"),
         (

@@ -12,7 +12,9 @@
 //!
 //! (the elliptic pressure of Hertz under the logarithm gives 2 ln(2/a) + 1; Johnson, Contact Mechanics, 5.6). The same
 //! holds along the face under a shear of the same distribution, with another kappa. What is left out is of the order
-//! (a/L)^2. The face around the contact stays free, so that both problems are those of a half-plane but for these
+//! (a/L)^2. Bonari and Paggi's (A4) is kappa = 0: there displacements count from the face at x = L of a half-plane, and so
+//! the arc of a disk may be held at any greater radius, as long as the approach is what the middle moves beyond x = L.
+//! The face around the contact stays free, so that both problems are those of a half-plane but for these
 //! constants, and the superposition of Jager and Ciavarella needs no more: see [`super::line_contact::Oscillation`].
 
 use std::f64::consts::PI;
@@ -64,6 +66,11 @@ impl HalfDisk {
 }
 
 impl Law {
+    /// kappa = 0, Eq. (A4): a half-plane, whose displacements count from its face at x = L. The same for both directions.
+    pub fn half_plane(disk: HalfDisk) -> Self {
+        Self { disk, constant: 0.0 }
+    }
+
     /// d(P), m, under a force P in N/m.
     pub fn displacement(&self, force: f64) -> f64 {
         if force <= 0.0 {
@@ -196,6 +203,17 @@ mod tests {
             let (ux, uy) = (first(&|d| u(x + d, 0.0).re), first(&|d| u(x, d).re));
             let (vx, vy) = (first(&|d| u(x + d, 0.0).im), first(&|d| u(x, d).im));
             assert!(((1.0 - poisson) * vy + poisson * ux).abs() < 1e-4 && (uy + vx).abs() < 1e-4, "{along:?} {n}");
+        }
+    }
+
+    /// (A4) for R = 1 m, L = 5 R and an approach of 1e-3 R: P = 0.18618 N/m. A disk of that radius takes 0.2380 (nu =
+    /// 0.49) or 0.2036 (nu = 0).
+    #[test]
+    fn the_half_plane_is_softer_than_the_disk() {
+        for (poisson, held) in [(0.49, 0.2380), (0.0, 0.2036)] {
+            let disk = HalfDisk { modulus: 814.7, poisson, radius: 5.0, indenter: 1.0 };
+            assert!((Law::half_plane(disk).force(1e-3) - 0.18618).abs() < 1e-5);
+            assert!((disk.normal().force(1e-3) - held).abs() < 1e-4);
         }
     }
 

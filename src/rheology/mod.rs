@@ -6,6 +6,7 @@ pub mod fractional;
 pub mod memory;
 pub mod poisson;
 pub mod prony;
+pub mod ramps;
 pub mod shift;
 
 pub use band::Band;
@@ -13,4 +14,5 @@ pub use fractional::Fractional;
 pub use memory::{Factors, Losses, Memory};
 pub use poisson::Poisson;
 pub use prony::{Arm, Prony};
+pub use ramps::{Loading, Ramp};
 pub use shift::Shift;

@@ -46,6 +46,11 @@ impl Prony {
         self.long_term() + self.arms.iter().map(|arm| arm.weight * (-t / arm.time).exp()).sum::<f64>()
     }
 
+    /// The integral of M/M_inst from 0 to t >= 0, s: mu_0 t + sum_i mu_i tau_i (1 - exp(-t/tau_i)).
+    pub fn integral(&self, t: f64) -> f64 {
+        self.long_term() * t - self.arms.iter().map(|arm| arm.weight * arm.time * (-t / arm.time).exp_m1()).sum::<f64>()
+    }
+
     /// M*(w)/M_inst = mu_0 + sum mu_i i w tau_i / (1 + i w tau_i), w in rad/s; Eq. (10).
     pub fn complex_modulus(&self, w: f64) -> Complex<f64> {
         let arm = |arm: &Arm| {

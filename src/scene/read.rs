@@ -68,7 +68,7 @@ pub fn from_table(table: &Table, file: &Path) -> Result<Scene> {
     let solver_section = root.optional_section("solver")?;
     let preset = solver_section.as_ref().map(preset).transpose()?.flatten();
     let phases = phase::read_all(&root, preset)?;
-    let materials = body::materials(&root, &body, super::material::band(&phases))?;
+    let materials = body::materials(&root, &body, super::material::loading(&phases).as_ref())?;
     let mut scene = Scene {
         indenter: indenter::read(&root.section("indenter")?)?,
         contact: contact(&root.section("contact")?, &body, &materials)?,

@@ -20,7 +20,7 @@ pub struct Sweep {
     pub file: PathBuf,
     /// The varied keys, slowest first.
     pub keys: Vec<String>,
-    /// One case for each combination of their values.
+    /// One case for each combination of their values, block by block.
     pub cases: Vec<Case>,
 }
 
@@ -60,17 +60,17 @@ pub fn read(text: &str, file: &Path) -> Result<String> {
     let base = open(&scene_file).map_err(|error| root.error("scene", error.to_string().replacen(": ", " ", 1)))?;
     let base = parse(&base, &scene_file)?;
     // A scene that is wrong by itself says so in its own name, unless what is wrong is varied.
-    let vary = vary(&root)?;
-    let follow = follow::read(&root, &vary.iter().map(|(key, _)| key.as_str()).collect::<Vec<_>>())?;
+    let blocks = vary(&root)?;
+    let keys: Vec<String> = blocks[0].iter().map(|(key, _)| key.clone()).collect();
+    let follow = follow::read(&root, &keys.iter().map(String::as_str).collect::<Vec<_>>())?;
 
-    let count = vary.iter().try_fold(1_usize, |count, (_, values)| count.checked_mul(values.len()));
-    let count = count.filter(|&count| count <= MOST_CASES).ok_or_else(|| {
+    let count = |block: &Block| block.iter().try_fold(1_usize, |count, (_, values)| count.checked_mul(values.len()));
+    let counts: Option<Vec<usize>> = blocks.iter().map(count).collect();
+    let counts = counts.filter(|counts| counts.iter().sum::<usize>() <= MOST_CASES).ok_or_else(|| {
         root.error("vary", format!("makes more than {MOST_CASES} cases; vary fewer keys or give fewer values"))
     })?;
-    let keys: Vec<String> = vary.iter().map(|(key, _)| key.clone()).collect();
-    let mut list = Vec::with_capacity(count);
-    for index in 0..count {
-        let chosen = combination(&vary, index);
+    let mut list = Vec::with_capacity(counts.iter().sum());
+    for chosen in blocks.iter().zip(counts).flat_map(|(block, count)| (0..count).map(|i| combination(block, i))) {
         let mut table = base.clone();
         let values: Vec<String> = chosen.iter().map(|(_, value)| shown(value)).collect();
         let label = label(&keys, &values);
@@ -121,10 +121,31 @@ pub fn receive(text: &str) -> Result<Sweep> {
     Ok(Sweep { file, keys, cases })
 }
 
-/// The varied keys with their values.
-fn vary(root: &Section) -> Result<Vec<(String, Vec<Value>)>> {
-    const WHAT: &str = "the keys that vary, such as \"phase.slide.velocity\" = [0.01, 0.1]";
-    let section = root.optional_section("vary")?.ok_or_else(|| root.missing("vary", WHAT))?;
+/// Varied keys with their values.
+type Block = Vec<(String, Vec<Value>)>;
+
+const VARY: &str = "the keys that vary, such as \"phase.slide.velocity\" = [0.01, 0.1]";
+
+/// `[vary]`, or each `[[vary]]`: all have the same keys in the same order.
+fn vary(root: &Section) -> Result<Vec<Block>> {
+    let several = matches!(root.table().get("vary"), Some(Value::Array(_)));
+    let sections =
+        if several { root.sections("vary", VARY)? } else { root.optional_section("vary")?.into_iter().collect() };
+    let name = |block: usize| if several { format!("vary.{block}") } else { "vary".to_owned() };
+    let blocks: Vec<Block> = sections.iter().map(block).collect::<Result<_>>()?;
+    let first = blocks.first().ok_or_else(|| root.missing("vary", VARY))?;
+    let alike = |block: &Block| block.iter().map(|(key, _)| key).eq(first.iter().map(|(key, _)| key));
+    match blocks.iter().position(|block| block.is_empty() || !alike(block)) {
+        None => Ok(blocks),
+        Some(at) if blocks[at].is_empty() => Err(root.error(&name(at), format!("is empty; give {VARY}"))),
+        Some(at) => {
+            let keys: Vec<&str> = first.iter().map(|(key, _)| key.as_str()).collect();
+            Err(root.error(&name(at), format!("must vary the keys of the first [[vary]]: {}", keys.join(", "))))
+        }
+    }
+}
+
+fn block(section: &Section) -> Result<Block> {
     let found =
         section.table().iter().map(|(key, value)| match value {
             Value::Array(values) if values.is_empty() => Err(section.error(key, "is empty; give at least one value")),
@@ -134,11 +155,7 @@ fn vary(root: &Section) -> Result<Vec<(String, Vec<Value>)>> {
                 .error(key, format!("must be an array of values; put a key with dots in quotes: \"{key}. ...\""))),
             other => Err(section.must_be(key, "an array of values", other)),
         });
-    let found: Vec<_> = found.collect::<Result<_>>()?;
-    if found.is_empty() {
-        return Err(root.error("vary", format!("is empty; give {WHAT}")));
-    }
-    Ok(found)
+    found.collect()
 }
 
 /// The values of case `index`: the first key is the slowest.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::material;
 use crate::error::Result;
-use crate::rheology::Band;
+use crate::rheology::Loading;
 use crate::scene::keys::{Quantity, Section};
 use crate::scene::{Body, Element, Layer, Material, MeshFile, Sides};
 
@@ -86,11 +86,10 @@ fn names(section: &Section, key: &str) -> Result<Vec<String>> {
     Ok(names)
 }
 
-/// `[material]`, or one `[[material]]` for each stratum of a layer or region of a mesh, in a loading history that visits
-/// the times of `band`.
-pub(super) fn materials(root: &Section, body: &Body, band: Option<Band>) -> Result<Vec<Material>> {
+/// `[material]`, or one `[[material]]` for each stratum of a layer or region of a mesh, in a loading history.
+pub(super) fn materials(root: &Section, body: &Body, loading: Option<&Loading>) -> Result<Vec<Material>> {
     let Ok(sections) = root.sections("material", "") else {
-        return Ok(vec![filling(&root.section("material")?, (body, true), band)?]);
+        return Ok(vec![filling(&root.section("material")?, (body, true), loading)?]);
     };
     let count = sections.len();
     let mut list: Vec<Material> = Vec::new();
@@ -104,7 +103,7 @@ pub(super) fn materials(root: &Section, body: &Body, band: Option<Band>) -> Resu
             Some(name) => section.called(format!("material.{name}")),
             None => section,
         };
-        let material = filling(&section, (body, index + 1 == count), band)?;
+        let material = filling(&section, (body, index + 1 == count), loading)?;
         if matches!(body, Body::Mesh(_)) && region.is_none() && count > 1 {
             return Err(section.missing("region", REGION));
         }
@@ -116,8 +115,8 @@ pub(super) fn materials(root: &Section, body: &Body, band: Option<Band>) -> Resu
 const REGION: &str = "the name of the physical surface that it fills";
 
 /// A material and what it fills of the body; `last` if none follows.
-fn filling(section: &Section, (body, last): (&Body, bool), band: Option<Band>) -> Result<Material> {
-    let material = material::read(section, &["region", "thickness"], band)?;
+fn filling(section: &Section, (body, last): (&Body, bool), loading: Option<&Loading>) -> Result<Material> {
+    let material = material::read(section, &["region", "thickness"], loading)?;
     let (region, thickness) = (section.optional_text("region", REGION)?, thickness(section, body, last)?);
     Ok(Material { region, thickness, ..material })
 }

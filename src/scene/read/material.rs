@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use super::super::{Arm, Material, Memory, PoissonRule, checks};
 use crate::error::{Error, Result};
-use crate::rheology::{Band, Fractional, Shift};
+use crate::rheology::{Fractional, Loading, Shift};
 use crate::scene::keys::{Quantity, Section};
 
 /// The keys of a material. What fills where is not among them.
@@ -41,16 +41,23 @@ struct Given {
 
 /// The instantaneous shear modulus and its arms, or what they are made from.
 enum Series {
-    Prony { modulus: f64, arms: Vec<Arm> },
-    Fractional { law: Fractional, arms: usize },
+    Prony {
+        modulus: f64,
+        arms: Vec<Arm>,
+    },
+    /// Of so many arms; none = the fewest that will do.
+    Fractional {
+        law: Fractional,
+        arms: Option<usize>,
+    },
 }
 
-/// Reads the material of a scene whose loading history visits the times of `band`. `others` are keys that may stand
+/// Reads the material of a scene with a loading history. `others` are keys that may stand
 /// beside those of a material: where it is, which is not read here.
-pub(in crate::scene) fn read(section: &Section, others: &[&str], band: Option<Band>) -> Result<Material> {
-    let material = given(section, others)?.resolve(section, band)?;
-    if let (Some(band), Some(rule)) = (band, material.poisson_rule)
-        && let Some((t, nu)) = material.poisson().leaves(band)
+pub(in crate::scene) fn read(section: &Section, others: &[&str], loading: Option<&Loading>) -> Result<Material> {
+    let material = given(section, others)?.resolve(section, loading)?;
+    if let (Some(loading), Some(rule)) = (loading, material.poisson_rule)
+        && let Some((t, nu)) = material.poisson().leaves(loading.band)
     {
         let key = if rule == PoissonRule::BulkArms { "bulk_arms" } else { "arms" };
         let reason = format!(
@@ -103,7 +110,7 @@ fn series(section: &Section, poisson_ratio: f64) -> Result<Series> {
     }
     fractional.only(&["modulus", "order", "arms"])?;
     let (modulus, order) = (fractional.number("modulus", MODULUS)?, fractional.number("order", ORDER)?);
-    let arms = fractional.count("arms", "a whole number of arms from 1 to 50", ARMS)?;
+    let arms = fractional.optional_count("arms", "a whole number of arms from 1 to 50", ARMS)?;
     let law = Fractional::new(modulus, order).map_err(|error| section.error("fractional", error.to_string()))?;
     Ok(Series::Fractional { law, arms })
 }
@@ -220,12 +227,12 @@ fn notes(section: &Section) -> Result<Vec<String>> {
 
 impl Given {
     /// The material at its temperature, as moduli and arms.
-    fn resolve(mut self, section: &Section, band: Option<Band>) -> Result<Material> {
+    fn resolve(mut self, section: &Section, loading: Option<&Loading>) -> Result<Material> {
         let factor = self.shift.map_or(1.0, |(_, _, factor)| factor);
         let (shear_modulus, mut arms) = match self.series {
             Series::Prony { modulus, ref mut arms } => (modulus, std::mem::take(arms)),
             Series::Fractional { law, arms } => {
-                self.approximate(law, arms, factor, band).map_err(|error| match error {
+                self.approximate(law, arms, factor, loading).map_err(|error| match error {
                     Error::Scene { .. } => error,
                     other => section.error("fractional", other.to_string()),
                 })?
@@ -256,26 +263,33 @@ impl Given {
         })
     }
 
-    /// The power law over the band as G(0) and arms at the reference temperature, where the band is 1/factor times as
-    /// late.
+    /// The power law under the loading as G(0) and arms at the reference temperature, where the clock runs 1/factor
+    /// times as fast.
     fn approximate(
         &mut self,
         law: Fractional,
-        arms: usize,
+        arms: Option<usize>,
         factor: f64,
-        band: Option<Band>,
+        loading: Option<&Loading>,
     ) -> Result<(f64, Vec<Arm>)> {
+        /// Of the forces, where the scene does not say how many arms.
+        const ERROR: f64 = 5e-3;
+        const MOST: usize = 20;
+
         let none = || Error::Domain("needs a loading history of finite times".into());
-        let band = band.ok_or_else(none)?;
-        let there = Band::new(band.from / factor, band.to / factor)?;
-        let series = law.approximate(there, arms)?;
+        let there = loading.ok_or_else(none)?.stretched(1.0 / factor);
+        let series = match arms {
+            Some(arms) => law.under(&there, arms)?,
+            None => law.within(ERROR, &there, MOST)?,
+        };
         self.notes.push(format!(
-            "power law E(t) = {} t^-{order} / Gamma(1 - {order}) Pa as a Prony series of {} arms from {:.3e} s to \
-             {:.3e} s: largest error {:.2e}",
+            "power law E(t) = {} t^-{order} / Gamma(1 - {order}) Pa as a Prony series of {} arms for steps from {:.3e} s \
+             to {:.3e} s: largest error of {} {:.2e}",
             law.modulus,
             series.series.arms.len(),
-            there.from,
-            there.to,
+            there.band.from,
+            there.band.to,
+            if there.is_idle() { "E(t) there" } else { "the forces of the scene's ramps" },
             series.max_error,
             order = law.order,
         ));
