@@ -35,7 +35,7 @@ fn layer(overrides: impl IntoIterator<Item = String>) -> Scene {
 }
 
 /// In 3200 equal steps, unless the overrides say otherwise.
-fn equal(overrides: &[&str]) -> Scene {
+fn in_steps(overrides: &[&str]) -> Scene {
     let steps = ["phase.indent.steps=100", "phase.onset.steps=100", "phase.slide.steps=3000"];
     layer(steps.iter().chain(overrides).map(|&set| set.to_owned()))
 }
@@ -60,9 +60,9 @@ fn apart(coarse: &Solution, fine: &Solution) -> [f64; 3] {
 /// the reference.
 fn a_third_of_the_steps(world: &SimpleCommunicator, _: &Path) {
     let reference = solve(world, &adaptive(2e-6, &[])).unwrap();
-    let equal = solve(world, &equal(&[])).unwrap();
+    let equal = solve(world, &in_steps(&[])).unwrap();
     let twice = ["phase.indent.steps=200", "phase.onset.steps=200", "phase.slide.steps=6000"];
-    let finer = apart(&solve(world, &equal(&twice)).unwrap(), &reference);
+    let finer = apart(&solve(world, &in_steps(&twice)).unwrap(), &reference);
     let adaptive = solve(world, &adaptive(7e-5, &[])).unwrap();
     let [off_equal, off_adaptive] = [&equal, &adaptive].map(|run| apart(run, &reference));
     let [steps_equal, attempts] = [equal.counts.steps, adaptive.counts.steps + adaptive.counts.rejected];

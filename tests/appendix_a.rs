@@ -64,3 +64,41 @@ fn compressible_is_coupled() {
     assert!((0.08..0.16).contains(&found.tangential), "{found:?}");
     assert!(found.normal.abs() < 0.02, "{found:?}");
 }
+
+/// (A4), P = pi E* d/[2 ln(2 x/a) + 1] with a^2 = 4 P R/(pi E*) and x = 5 R, counts displacements from the face at x: N
+/// within 1 % of it at D - u_z there (found: 0.5 %), which is 1e-3 R to 0.2 %, so that N is near 0.18618 N/m; and at a
+/// shift of f times as much, counted the same way, the contact slips as a whole: Q = f N (found: 0.999 f N; 0.84 f N on
+/// the disk whose arc is fixed at x).
+#[test]
+fn a_distant_arc_gives_the_half_plane() {
+    let mesh = common::directory("meshes/half_plane.msh");
+    let run = Run::new(include_str!("../runs/appendix-a-half-plane.toml")).set(format!("mesh.file={mesh:?}"));
+    let outcome = run.set("output.interface_every=0").done();
+    let results = outcome.results();
+    let x = results.interface("x").unwrap();
+    // Of both sides, between nodes by straight lines in ln x.
+    let far = |name: &str, row: usize| {
+        let field = results.interface(name).unwrap();
+        let side = |sign: f64| {
+            let mut nodes: Vec<(f64, f64)> = x.row(0).iter().map(|x| sign * x).zip(field.row(row).to_vec()).collect();
+            nodes.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let above = nodes.partition_point(|node| node.0 < 5.0);
+            let ((x0, u0), (x1, u1)) = (nodes[above - 1], nodes[above]);
+            u0 + (u1 - u0) * (5.0 / x0).ln() / (x1 / x0).ln()
+        };
+        0.5 * (side(-1.0) + side(1.0))
+    };
+    let pressed = |name: &str| outcome.at(1.0, name);
+    let forth = |name: &str| outcome.at(2.0, name);
+    let approach = pressed("approach") + far("displacement_z", 0);
+    let stiffness = std::f64::consts::PI * 814.7;
+    let mut force = 0.18618;
+    for _ in 0..50 {
+        force = stiffness * approach / (2.0 * (10.0 / (4.0 * force / stiffness).sqrt()).ln() + 1.0);
+    }
+    let shift = forth("sliding") - far("displacement_x", 1);
+    println!("approach {approach}, N {}, (A4) {force}, shift {shift}", pressed("normal_force"));
+    assert!((approach / 1e-3 - 1.0).abs() < 2e-3 && (shift / (FRICTION * approach) - 1.0).abs() < 0.01);
+    assert!((pressed("normal_force") / force - 1.0).abs() < 0.01 && (force / 0.18618 - 1.0).abs() < 2e-3);
+    assert!((forth("tangential_force") / (FRICTION * pressed("normal_force")) - 1.0).abs() < 0.01);
+}

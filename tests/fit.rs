@@ -46,9 +46,10 @@ fn assert_recovers(fit: &Fit, modulus: f64, series: &Prony, tolerance: f64) {
 }
 
 /// Bonari and Paggi (2020), Table 1: the power law with 814.7 Pa s^0.226 and order 0.226, G = E/2, fifty times from
-/// 0.1 s to 10 s, least squares on G, 1, 2 and 3 arms. Modulus to 1e-3 Pa, weights and times to 1e-3.
+/// 0.1 s to 10 s, least squares on G, 1, 2 and 3 arms. Modulus to 1e-3 Pa, weights and times to 1e-3: all as printed but the
+/// first weight of three arms, which is 0.3095 where the table, whose weights are made to sum to 1, has 0.310.
 #[test]
-fn table_1_of_the_paper_to_every_printed_digit() {
+fn table_1_of_the_paper_to_every_printed_digit_but_one() {
     type Row<'a> = (&'a str, &'a [&'a str], &'a [&'a str]);
     let rows: [Row; 3] = [
         ("568.498", &["0.579"], &["0.817"]),

@@ -99,17 +99,18 @@ impl Fractional {
     ///
     /// A ramp asks for all times down to 0, where the power law has no end, but only for its integral up to the first
     /// step h. So one arm, much faster than h, makes that integral exact, and the others follow E_f from h/3 on. Where
-    /// nothing is loaded the error is that of E_f over the band.
+    /// nothing is loaded all follow E_f, and the error is that of E_f over the band.
     pub fn under(self, loading: &Loading, arms: usize) -> Result<Approximation> {
-        let h = loading.band.from;
-        if arms < 2 {
-            return Ok(self.judged(self.approximate(loading.band, arms)?, loading));
+        if loading.is_idle() {
+            return self.approximate(loading.band, arms);
         }
-        let slow = self.approximate(Band::new(h / 3.0, loading.band.to)?, arms - 1)?;
+        let h = loading.band.from;
+        let slow = self.approximate(Band::new(h / 3.0, loading.band.to)?, arms.max(2) - 1)?;
         let missing = self.integral(h) - slow.integral(h);
         // Of such an arm exp(-10) is left after the first step.
-        let whole = if missing > 0.0 { slow.with(h / 10.0, missing, h) } else { slow };
-        Ok(self.judged(whole, loading))
+        let series = if arms > 1 && missing > 0.0 { slow.with(h / 10.0, missing, h) } else { slow };
+        let max_error = loading.force_error(|t| series.integral(t), |t| self.integral(t));
+        Ok(Approximation { max_error, ..series })
     }
 
     /// The fewest arms whose forces are within `error`, of at most `most`.
@@ -121,14 +122,6 @@ impl Fractional {
             }
         }
         self.under(loading, most)
-    }
-
-    fn judged(self, series: Approximation, loading: &Loading) -> Approximation {
-        let max_error = match loading.is_idle() {
-            true => self.largest_error(&series, loading.band, 1000),
-            false => loading.force_error(|t| series.integral(t), |t| self.integral(t)),
-        };
-        Approximation { max_error, ..series }
     }
 
     /// Of M, relative, at `count` times of a band.
