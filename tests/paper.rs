@@ -57,7 +57,7 @@ fn the_order_of_the_arms_is_that_of_the_poisson_rule() {
     {
         for (arms, known) in (1..).zip(known) {
             let run = layer(arms, rule).set("layer.cells=[64,64]").set("phase.indent.steps=25");
-            let found: Outcome = run.set("phase.onset.steps=25").set("phase.slide.steps=250").done();
+            let found: Outcome = run.set("phase.onset.steps=25").set("phase.slide.steps=500").done();
             let force = found.last("tangential_force");
             println!("{rule}, {arms}: {force}");
             assert!((force - known).abs() < 2e-4, "{rule}, {arms} arms: {force}");
