@@ -80,7 +80,7 @@ fn a_distant_arc_gives_the_half_plane() {
     let far = |name: &str, row: usize| {
         let field = results.interface(name).unwrap();
         let side = |sign: f64| {
-            let mut nodes: Vec<(f64, f64)> = x.row(0).iter().map(|x| sign * x).zip(field.row(row).to_vec()).collect();
+            let mut nodes: Vec<(f64, f64)> = x.values.iter().map(|x| sign * x).zip(field.row(row).to_vec()).collect();
             nodes.sort_by(|a, b| a.0.total_cmp(&b.0));
             let above = nodes.partition_point(|node| node.0 < 5.0);
             let ((x0, u0), (x1, u1)) = (nodes[above - 1], nodes[above]);

@@ -1,5 +1,5 @@
 //! The study of the paper (Bonari and Paggi, Lubricants 8 (2020) 107): what its scenes must show.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;
 
