@@ -74,7 +74,7 @@ fn a_run_has_eight_figures() {
             "what does not balance",
         ],
         &["(a) approach: pressure", "(b) from stick to slip: shear traction", "(c) gross sliding", "pressure p, Pa"],
-        &["(a) σ_zz, t = 10 s", "(d) τ_xz", "σ_zz / E(0), 10⁻⁴", "x, m (shifted by half a period)"],
+        &["(a) σ_zz, t = 10 s", "(d) τ_xz", "σ_zz / E(0), 10⁻³", "x, m (shifted by half a period)"],
         &["no contact", "stick", "slip", "time t, s"],
         &["indenter", "face of the layer", "after sliding by"],
         &["relaxation modulus G(t), Pa", "1 arm", "angular frequency"],
