@@ -8,14 +8,9 @@ use mpjr::rheology::{Arm, Band, Fractional, Poisson, Prony};
 fn figure(x: Axis, y: Axis, points: Vec<(f64, f64)>) -> Figure {
     let curve =
         |stroke, i: usize| Curve { label: format!("{stroke:?}"), points: points.clone(), colour: PALETTE[i], stroke };
-    let strokes = [Stroke::Solid, Stroke::Dashed, Stroke::Dotted, Stroke::Points];
-    Figure {
-        title: "a < b & c".into(),
-        x,
-        y,
-        curves: strokes.into_iter().enumerate().map(|(i, stroke)| curve(stroke, i)).collect(),
-        shaded: None,
-    }
+    let strokes = [Stroke::Solid, Stroke::Dashed, Stroke::Dotted, Stroke::Points, Stroke::Broad];
+    let curves = strokes.into_iter().enumerate().map(|(i, stroke)| curve(stroke, i)).collect();
+    Figure::new("a < b & c", x, y, curves)
 }
 
 #[test]
@@ -31,7 +26,7 @@ fn figure_3_is_drawn_as_png_and_svg() {
     let all = figures.all();
     assert_eq!(
         all.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
-        ["relaxation", "moduli", "loss_tangent", "comparison", "deviation"]
+        ["relaxation", "loss", "storage", "loss_tangent", "deviation"]
     );
     for (name, figure) in all {
         // Twice: what this program drew it may draw again.
@@ -40,6 +35,9 @@ fn figure_3_is_drawn_as_png_and_svg() {
             let bytes = std::fs::read(&png).unwrap();
             let image = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
             assert_eq!((image.info().width, image.info().height), (1800, 1200));
+            // 300 dots an inch: 300/0.0254 to the metre.
+            let dots = image.info().pixel_dims.unwrap();
+            assert_eq!((dots.xppu, dots.yppu, dots.unit), (11811, 11811, png::Unit::Meter));
             let text = std::fs::read_to_string(&svg).unwrap();
             assert!(text.contains("width=\"900\" height=\"600\" viewBox=\"0 0 3600 2400\"") && text.contains("1 arm"));
             for curve in &figure.curves {
@@ -93,14 +91,34 @@ fn odd_data_are_drawn_without_failing() {
     }
 }
 
+/// Neither a file nor a directory, and nothing is left beside what was there.
 #[test]
-fn a_foreign_file_is_not_replaced() {
+fn what_is_foreign_is_not_replaced() {
     let directory = tempfile::tempdir().unwrap();
-    let photo = directory.path().join("holiday.svg");
-    std::fs::write(&photo, "<svg/>").unwrap();
+    let at = |name: &str| directory.path().join(name);
     let figure = figure(Axis::linear("x"), Axis::linear("y"), vec![(0.0, 0.0), (1.0, 1.0)]);
-    let error = figure.write(&directory.path().join("holiday")).unwrap_err();
+    std::fs::write(at("holiday.svg"), "<svg/>").unwrap();
+    let error = figure.write(&at("holiday")).unwrap_err();
     assert_eq!(error.exit_code(), 4);
-    assert_eq!(std::fs::read_to_string(&photo).unwrap(), "<svg/>");
-    assert!(!directory.path().join("holiday.png").exists());
+    assert!(
+        error.to_string().contains("holiday.svg: exists and was not drawn by mpjr; remove it or choose"),
+        "{error}"
+    );
+    assert_eq!(std::fs::read_to_string(at("holiday.svg")).unwrap(), "<svg/>");
+    std::fs::create_dir(at("folder.png")).unwrap();
+    assert_eq!(figure.write(&at("folder")).unwrap_err().exit_code(), 4);
+    assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 2);
+}
+
+/// Subscripts are smaller texts of their own, and the marks are gone.
+#[test]
+fn subscripts_are_set_as_such() {
+    let directory = tempfile::tempdir().unwrap();
+    let figure = figure(Axis::linear("w^{*}, rad/s"), Axis::linear("p/E_{f,0}"), vec![(0.0, 0.0), (1.0, 1.0)]);
+    let [_, svg] = figure.write(&directory.path().join("figure")).unwrap();
+    let text = std::fs::read_to_string(svg).unwrap();
+    for run in ["\nw\n", "\n*\n", "\np/E\n", "\nf,0\n"] {
+        assert!(text.contains(run), "{run:?}");
+    }
+    assert!(!text.contains("_{") && !text.contains("^{"));
 }

@@ -11,9 +11,8 @@ use crate::error::{Error, Result};
 use crate::input;
 use crate::plot::Sheet;
 use crate::plot::material::{self, Solid};
-use crate::plot::results::{self, Run};
+use crate::plot::results::{self, Closed, Run};
 use crate::plot::sweep::{self, Sweep};
-use crate::rheology::Fractional;
 use crate::scene;
 
 /// The arguments of `mpjr plot`.
@@ -29,12 +28,17 @@ pub struct PlotArguments {
     /// Where the figures go, made if need be
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
-    /// Beside materials, the power law E(t) = E t^-ALPHA / Gamma(1 - ALPHA) they stand for, with G = E/(2 (1 + nu))
+    /// The power law E(t) = E t^-ALPHA / Gamma(1 - ALPHA) that the materials stand for: drawn beside them, and the
+    /// unit of tractions and stresses
     #[arg(long, value_name = "E,ALPHA")]
     fractional: Option<PowerLaw>,
     /// Beside the figure reactions, the closed forms of a half disk of this radius, m, fixed along its arc
-    #[arg(long, value_name = "RADIUS")]
+    #[arg(long, value_name = "RADIUS", conflicts_with = "half_plane")]
     half_disk: Option<f64>,
+    /// Beside the figure reactions, Eq. (A4): a half-plane whose displacements count from its face at this distance, m,
+    /// on either side of the indenter
+    #[arg(long, value_name = "DISTANCE")]
+    half_plane: Option<f64>,
 }
 
 /// A figure: the stem of its files, and what it shows.
@@ -55,15 +59,19 @@ pub fn run(arguments: &PlotArguments) -> Result<()> {
 fn drawings(arguments: &PlotArguments) -> Result<Vec<Drawing>> {
     let input = &arguments.input;
     let is_material = input.extension().is_some_and(|end| end == "toml");
-    if arguments.fractional.is_some() && !is_material {
-        return Err(Error::Usage("--fractional: only beside a material; the first argument is none".into()));
+    if arguments.fractional.is_some() && input.is_dir() {
+        let reason = "--fractional: only beside a material or a result file; the first argument is a directory";
+        return Err(Error::Usage(reason.into()));
     }
-    if let Some(radius) = arguments.half_disk {
-        if is_material || input.is_dir() {
-            return Err(Error::Usage("--half-disk: only beside a result file; the first argument is none".into()));
-        }
-        if !(radius > 0.0 && radius.is_finite()) {
-            return Err(Error::Usage(format!("--half-disk: must be a positive radius in m, got {radius}")));
+    for (flag, length) in [("--half-disk", arguments.half_disk), ("--half-plane", arguments.half_plane)] {
+        match length {
+            Some(_) if is_material || input.is_dir() => {
+                return Err(Error::Usage(format!("{flag}: only beside a result file; the first argument is none")));
+            }
+            Some(length) if !(length > 0.0 && length.is_finite()) => {
+                return Err(Error::Usage(format!("{flag}: must be a positive length in m, got {length}")));
+            }
+            _ => {}
         }
     }
     if input.is_dir() {
@@ -81,7 +89,8 @@ fn of_run(file: &Path, arguments: &PlotArguments) -> Result<Vec<Drawing>> {
     let known: Vec<&str> = results::FIGURES.iter().map(|kind| kind.name).collect();
     check(asked, &known, "a result file")?;
     let mut run = Run::open(file)?;
-    run.half_disk = arguments.half_disk;
+    run.closed = arguments.half_disk.map(Closed::Arc).or(arguments.half_plane.map(Closed::Face));
+    run.law = arguments.fractional.map(|PowerLaw(law)| law);
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let wanted = |kind: &&results::Kind| match asked {
         [] => kind.possible(&run),
@@ -115,9 +124,7 @@ fn of_materials(arguments: &PlotArguments) -> Result<Vec<Drawing>> {
         [material] => vec![Solid::of(material, "")],
         materials => files.iter().zip(materials).map(|(file, material)| Solid::of(material, &stem(file))).collect(),
     };
-    let nu = materials[0].poisson_ratio;
-    let shear = |PowerLaw(law): PowerLaw| Fractional { modulus: law.modulus / (2.0 * (1.0 + nu)), order: law.order };
-    let sheet = material::sheet(&solids, arguments.fractional.map(shear));
+    let sheet = material::sheet(&solids, arguments.fractional.map(|PowerLaw(law)| law));
     Ok(vec![(format!("{}-material", stem(&files[0])), sheet)])
 }
 

@@ -6,16 +6,15 @@ use std::sync::OnceLock;
 use plotters::prelude::{BitMapBackend, IntoDrawingArea, SVGBackend};
 use plotters::style::{FontStyle, register_font};
 
-use plotters::coord::Shift;
-use plotters::prelude::{DrawingArea, DrawingBackend};
-
-use super::draw::draw;
-use super::painter::{FONT, UNIT, refused};
+use super::painter::{FONT, UNIT};
 use super::{Figure, Panel, Sheet};
 use crate::error::{Error, Result};
 
 /// Drawing units averaged into one pixel of a PNG, along each side.
 const SAMPLES: u32 = 2;
+
+/// px to the inch on paper: two pixels of a PNG each make 300 dots an inch.
+const PER_INCH: f64 = 150.0;
 
 /// By which a file of this program is known again.
 const MARK: &str = "drawn by mpjr";
@@ -26,42 +25,40 @@ const SINGLE: (u32, u32) = (900, 600);
 impl Figure {
     /// Writes `stem`.png and `stem`.svg and returns their paths. Files of another origin are not replaced.
     pub fn write(&self, stem: &Path) -> Result<[PathBuf; 2]> {
-        Sheet { panels: vec![Panel::Curves(self.clone())], columns: 1, size: SINGLE }.write(stem)
+        let panels = vec![Panel::Curves(self.clone())];
+        Sheet { panels, columns: 1, size: SINGLE, note: String::new() }.write(stem)
     }
 }
 
 impl Sheet {
-    /// Writes `stem`.png and `stem`.svg and returns their paths. Files of another origin are not replaced.
+    /// Writes `stem`.png and `stem`.svg, both or none, and returns their paths. Files of another origin are not
+    /// replaced.
     pub fn write(&self, stem: &Path) -> Result<[PathBuf; 2]> {
         fonts()?;
-        let [png, svg] = ["png", "svg"].map(|kind| {
+        let named = |end: String| {
             // Not with_extension: a dot in the stem belongs to its name.
             let mut name = stem.file_name().unwrap_or_default().to_owned();
-            name.push(format!(".{kind}"));
+            name.push(end);
             stem.with_file_name(name)
-        });
-        replaceable(&png)?;
-        replaceable(&svg)?;
-        std::fs::write(&png, self.png()?).map_err(|error| Error::file(&png, error))?;
-        std::fs::write(&svg, self.svg()?).map_err(|error| Error::file(&svg, error))?;
-        Ok([png, svg])
-    }
-
-    fn rows(&self) -> usize {
-        self.panels.len().div_ceil(self.columns)
-    }
-
-    /// Width and height of all panels, px.
-    fn extent(&self) -> (u32, u32) {
-        (self.size.0 * self.columns as u32, self.size.1 * self.rows() as u32)
-    }
-
-    /// Draws every panel on its part of the area.
-    fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>, sink: f64) -> Result<()> {
-        for (panel, part) in self.panels.iter().zip(area.split_evenly((self.rows(), self.columns))) {
-            draw(panel, &part, sink)?;
+        };
+        let files = ["png", "svg"].map(|kind| named(format!(".{kind}")));
+        let parts = ["png", "svg"].map(|kind| named(format!(".{kind}.mpjr-{}.part", std::process::id())));
+        files.iter().try_for_each(|file| replaceable(file))?;
+        let failed = |file: &Path| {
+            let file = file.to_owned();
+            move |error| Error::file(&file, error)
+        };
+        let outcome = (|| {
+            std::fs::write(&parts[0], self.png()?).map_err(failed(&files[0]))?;
+            std::fs::write(&parts[1], self.svg()?).map_err(failed(&files[1]))?;
+            let mut pairs = parts.iter().zip(&files);
+            pairs.try_for_each(|(part, file)| std::fs::rename(part, file).map_err(failed(file)))
+        })();
+        if outcome.is_err() {
+            // The error at hand says more than one about a leftover.
+            parts.iter().for_each(|part| _ = std::fs::remove_file(part));
         }
-        area.present().map_err(refused)
+        outcome.map(|()| files)
     }
 
     fn svg(&self) -> Result<String> {
@@ -95,6 +92,9 @@ impl Sheet {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, columns, rows);
         encoder.set_color(png::ColorType::Rgb);
+        let per_metre = (f64::from(UNIT / SAMPLES) * PER_INCH / 0.0254).round() as u32;
+        let dots = png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter };
+        encoder.set_pixel_dims(Some(dots));
         encoder.add_text_chunk("Software".into(), format!("{MARK} {}", env!("CARGO_PKG_VERSION"))).map_err(broken)?;
         let mut writer = encoder.write_header().map_err(broken)?;
         writer.write_image_data(&pixels).map_err(broken)?;
@@ -103,14 +103,19 @@ impl Sheet {
     }
 }
 
-/// Refuses a path where a file lies that this program did not draw.
+/// Refuses a path where something lies that this program did not draw.
 pub fn replaceable(path: &Path) -> Result<()> {
-    match std::fs::read(path) {
-        Ok(bytes) if bytes.windows(MARK.len()).take(1000).any(|window| window == MARK.as_bytes()) => Ok(()),
-        Ok(_) => Err(Error::file(path, "exists and was not drawn by mpjr; name another file or remove it")),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
-        Err(error) => Err(Error::file(path, error)),
+    let foreign =
+        || Error::file(path, "exists and was not drawn by mpjr; remove it or choose another directory with --out");
+    match std::fs::symlink_metadata(path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
+        Err(error) => return Err(Error::file(path, error)),
+        Ok(found) if !found.is_file() => return Err(foreign()),
+        Ok(_) => {}
     }
+    let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
+    let ours = bytes.windows(MARK.len()).take(1000).any(|window| window == MARK.as_bytes());
+    if ours { Ok(()) } else { Err(foreign()) }
 }
 
 /// Makes the embedded font known to the drawing library, once.

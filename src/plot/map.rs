@@ -1,16 +1,15 @@
 //! A field over a pair of axes, drawn in colours.
 
 use plotters::prelude::DrawingBackend;
-use plotters::style::text_anchor::HPos;
 
-use super::draw::{Legend, Sample, labels, size, title, with_power};
-use super::painter::{Frame, LABEL, Mapping, Painter, TICK};
-use super::ticks::{Tick, ticks};
-use super::{Axis, Colour, Curve, Ramp, Scale};
+use super::axes::{Mapping, Ruler, with_power};
+use super::bar::Bar;
+use super::layout::{Drawn, Place, Sides, labels, left_of};
+use super::legend::{Legend, Sample};
+use super::painter::{Frame, Painter};
+use super::ticks::{linear, minus};
+use super::{Axis, Colour, Ramp};
 use crate::error::Result;
-
-/// Width of a colour bar, px.
-const BAR: f64 = 20.0;
 
 /// Values on a regular grid; NaN = nothing is known there.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,8 +53,6 @@ pub struct Map {
     pub raster: Raster,
     /// Its colours.
     pub colouring: Colouring,
-    /// Drawn over it.
-    pub curves: Vec<Curve>,
     /// Whether a length on one axis is as long on the other.
     pub equal: bool,
 }
@@ -99,46 +96,69 @@ impl Colouring {
     }
 }
 
-/// Draws a map on the painter's area.
-pub fn draw<DB: DrawingBackend>(map: &Map, painter: &Painter<DB>) -> Result<()> {
-    let (width, height) = size(painter);
-    let (x_range, y_range) = (map.x.range.unwrap_or(map.raster.x), map.y.range.unwrap_or(map.raster.y));
-    let (y_ticks, y_power) = ticks(Scale::Linear, y_range, (height / 65.0) as usize);
-    let widest = y_ticks.iter().filter_map(|tick| tick.label.as_deref()).map(|label| painter.width(label, TICK));
-    let left = 58.0 + widest.fold(0.0, f64::max);
-    let right = match &map.colouring {
-        Colouring::Bands { .. } => width - 130.0,
-        Colouring::Classes(_) => width - 24.0,
-    };
-    let mut entries: Vec<_> = match &map.colouring {
-        Colouring::Bands { .. } => Vec::new(),
-        Colouring::Classes(classes) => classes.iter().map(|(name, c)| (name.as_str(), Sample::Field(*c))).collect(),
-    };
-    let curves = map.curves.iter().filter(|curve| !curve.label.is_empty());
-    entries.extend(curves.map(|curve| (curve.label.as_str(), Sample::Curve(curve))));
-    let legend = Legend::new(painter, entries, right - left);
-    let mut frame = Frame { left, top: 50.0 + legend.height(), right, bottom: height - 72.0 };
-    if map.equal {
-        let ratio = (x_range.1 - x_range.0) / (y_range.1 - y_range.0);
-        let (wide, high) = (frame.right - frame.left, frame.bottom - frame.top);
-        frame.right = frame.left + wide.min(high * ratio);
-        frame.bottom = frame.top + high.min(wide / ratio);
+impl<DB: DrawingBackend> Drawn<DB> for Map {
+    fn title(&self) -> &str {
+        &self.title
     }
-    let (x_ticks, x_power) = ticks(Scale::Linear, x_range, ((frame.right - frame.left) / 85.0) as usize);
-    let x = Mapping { scale: Scale::Linear, range: x_range, ends: (frame.left, frame.right) };
-    let y = Mapping { scale: Scale::Linear, range: y_range, ends: (frame.bottom, frame.top) };
 
-    title(painter, &map.title, &frame)?;
-    field(map, painter, &frame, (&x, &y))?;
-    for curve in &map.curves {
-        painter.curve(curve, &frame, &x, &y)?;
+    fn sides(&self, painter: &Painter<DB>, height: f64) -> Sides {
+        let bar = self.bar().map_or(0.0, |bar| bar.width(painter));
+        Sides { left: left_of(self.upwards(height).widest(painter)), right: bar + 20.0 }
     }
-    painter.axes(&frame, (&x, &x_ticks), (&y, &y_ticks))?;
-    labels(painter, &frame, &with_power(&map.x, x_power), &with_power(&map.y, y_power))?;
-    if let Colouring::Bands { label, levels, .. } = &map.colouring {
-        bar(map, painter, &frame, (label, levels))?;
+
+    fn legend(&self, painter: &Painter<DB>, width: f64) -> f64 {
+        Legend::new(painter, self.entries(), width).height()
     }
-    legend.draw(painter, &frame)
+
+    fn draw(&self, painter: &Painter<DB>, &Place { mut frame, sides, height }: &Place) -> Result<()> {
+        let legend = Legend::new(painter, self.entries(), frame.right - frame.left);
+        let upwards = self.upwards(height);
+        if self.equal {
+            let (x, y) = (self.raster.x, self.raster.y);
+            let ratio = (x.1 - x.0) / (y.1 - y.0);
+            let (wide, high) = (frame.right - frame.left, frame.bottom - frame.top);
+            frame.right = frame.left + wide.min(high * ratio);
+            frame.bottom = frame.top + high.min(wide / ratio);
+        }
+        let across = ruler(&self.x, self.raster.x, (frame.right - frame.left) / 66.0);
+        let (x, y) = (across.along(frame.left, frame.right), upwards.along(frame.bottom, frame.top));
+        field(self, painter, &frame, (&x, &y))?;
+        painter.axes(&frame, (&x, &across.ticks), (&y, &upwards.ticks))?;
+        labels(painter, &frame, sides, (&across.label, &upwards.label))?;
+        self.bar().iter().try_for_each(|bar| bar.draw(painter, &frame))?;
+        legend.draw(painter, &frame)
+    }
+}
+
+impl Map {
+    /// The vertical axis in a panel of this height.
+    fn upwards(&self, height: f64) -> Ruler {
+        ruler(&self.y, self.raster.y, (height - 106.0) / 34.0)
+    }
+
+    /// The names of the classes.
+    fn entries(&self) -> Vec<(&str, Sample<'_>)> {
+        match &self.colouring {
+            Colouring::Bands { .. } => Vec::new(),
+            Colouring::Classes(classes) => classes.iter().map(|(name, c)| (name.as_str(), Sample::Field(*c))).collect(),
+        }
+    }
+
+    /// The colours of the bands, with their limits.
+    fn bar(&self) -> Option<Bar> {
+        let Colouring::Bands { label, levels, .. } = &self.colouring else { return None };
+        let (names, exponent) = names(levels);
+        Some(Bar {
+            label: with_power(label, exponent),
+            fields: (0..levels.len() - 1).map(|i| self.colouring.colour(i)).collect(),
+            marks: names.into_iter().enumerate().map(|(i, name)| (i as f64, name)).collect(),
+        })
+    }
+}
+
+/// An axis as long as the grid, with at most about `most` labels.
+fn ruler(axis: &Axis, (from, to): (f64, f64), most: f64) -> Ruler {
+    Ruler::new(&axis.clone().over(from, to), std::iter::empty(), most as usize)
 }
 
 /// Rectangles of one colour, as long as they get.
@@ -175,46 +195,19 @@ fn field<DB: DrawingBackend>(
     Ok(())
 }
 
-/// The colour bar right of the frame.
-fn bar<DB: DrawingBackend>(
-    map: &Map,
-    painter: &Painter<DB>,
-    frame: &Frame,
-    (label, levels): (&str, &[f64]),
-) -> Result<()> {
-    let (left, bands) = (frame.right + 18.0, levels.len() - 1);
-    let bar = Frame { left, right: left + BAR, ..*frame };
-    let at = |i: usize| bar.bottom + (bar.top - bar.bottom) * i as f64 / bands as f64;
-    for i in 0..bands {
-        painter.rectangle((bar.left, at(i + 1)), (bar.right, at(i)), map.colouring.colour(i))?;
-    }
-    let (Frame { left, top, right, bottom }, ink) = (bar, (40, 40, 40));
-    painter.line(&[(left, top), (right, top), (right, bottom), (left, bottom), (left, top)], ink, 1.0)?;
-    let every = bands.div_ceil(10).max(1);
-    // The levels as the ticks of an axis would say them.
-    let (told, exponent) = names(levels);
-    let mut widest = 0.0f64;
-    for (i, name) in told.iter().enumerate().step_by(every) {
-        painter.line(&[(right, at(i)), (right + 6.0, at(i))], ink, 1.0)?;
-        painter.text(name, (right + 10.0, at(i)), TICK, HPos::Left)?;
-        widest = widest.max(painter.width(name, TICK));
-    }
-    let text = with_power(&Axis::linear(label), exponent);
-    let beside = (right + 10.0 + widest + 0.75 * LABEL, 0.5 * (top + bottom));
-    painter.upright(&text, beside)
-}
-
 /// The levels in as few digits as tell them apart, and the power of ten they leave out.
 fn names(levels: &[f64]) -> (Vec<String>, i32) {
     let (low, high) = (levels[0], levels[levels.len() - 1]);
-    let (ticks, exponent) = ticks(Scale::Linear, (low, high), 2 * levels.len());
+    let exponent = linear(&[((low, high), levels.len())]).1;
     let unit = 10f64.powi(exponent);
     let step = (high - low) / (levels.len() - 1) as f64 / unit;
-    let decimals = (0..9).find(|d| (step * 10f64.powi(*d) - (step * 10f64.powi(*d)).round()).abs() < 1e-6).unwrap_or(3);
-    let name = |level: &f64| match ticks.iter().find(|tick: &&Tick| (tick.at - level).abs() < 1e-9 * unit) {
-        Some(_) if *level == 0.0 => "0".to_owned(),
-        _ => format!("{:.*}", decimals as usize, level / unit).replace('-', "−"),
+    let whole = |decimals: &usize| {
+        let digits = step * 10f64.powi(*decimals as i32);
+        (digits - digits.round()).abs() < 1e-6
     };
+    let decimals = (0..9).find(whole).unwrap_or(3);
+    // No level is minus nothing.
+    let name = |level: &f64| minus(&format!("{:.decimals$}", if *level == 0.0 { 0.0 } else { level / unit }));
     (levels.iter().map(name).collect(), exponent)
 }
 

@@ -1,4 +1,6 @@
 //! Figures of a material: what Bonari and Paggi (2020), Figure 3, shows of theirs.
+//!
+//! (a) relaxation modulus, (b) loss modulus, (c) storage modulus, (d) loss tangent.
 
 use super::{Axis, Curve, Figure, PALETTE, REFERENCE, Sheet, Stroke};
 use crate::rheology::fit::{Samples, Test};
@@ -24,11 +26,9 @@ pub fn poisson_figure(materials: &[(&str, &Poisson)], band: Band) -> Figure {
     let curves: Vec<Curve> = materials
         .iter()
         .enumerate()
-        .map(|(i, (label, poisson))| Curve {
-            label: (*label).into(),
-            points: times.samples(400).into_iter().map(|t| (t, poisson.at(t))).collect(),
-            colour: PALETTE[i % PALETTE.len()],
-            stroke: Stroke::Solid,
+        .map(|(i, (label, poisson))| {
+            let points = times.samples(400).into_iter().map(|t| (t, poisson.at(t))).collect();
+            Curve::line(*label, points, PALETTE[i % PALETTE.len()])
         })
         .collect();
     let values = || curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
@@ -36,11 +36,13 @@ pub fn poisson_figure(materials: &[(&str, &Poisson)], band: Band) -> Figure {
     // A ratio that stays is a line through the middle.
     let margin = (0.05 * (most - least)).max(0.01);
     Figure {
-        title: "Poisson ratio".into(),
-        x: Axis::log("time t, s").over(times.from, times.to),
-        y: Axis::linear("Poisson ratio ν(t) = (3K − 2G)/(6K + 2G)").over(least - margin, most + margin),
-        curves,
         shaded: Some((band, "times of the loading history".into())),
+        ..Figure::new(
+            "Poisson ratio, ν = (3K − 2G)/(6K + 2G)",
+            Axis::log("time t, s").over(times.from, times.to),
+            Axis::linear("Poisson ratio ν(t)").over(least - margin, most + margin),
+            curves,
+        )
     }
 }
 
@@ -69,86 +71,68 @@ pub struct MaterialFigures<'a> {
 }
 
 impl MaterialFigures<'_> {
-    /// Every figure with the name of its file: relaxation, moduli and loss_tangent (Figure 3 a to c), comparison
-    /// (Figure 3 d) with a law or relaxation data, and deviation with any reference.
+    /// Every figure with the name of its file: Figure 3 (a) to (d), and the deviation from any reference.
     pub fn all(&self) -> Vec<(&'static str, Figure)> {
-        let mut figures =
-            vec![("relaxation", self.relaxation()), ("moduli", self.moduli()), ("loss_tangent", self.loss_tangent())];
-        // Dynamic data stand beside the series in the second figure already.
-        if !matches!(self.reference, Reference::None | Reference::Data(Samples { test: Test::Dynamic, .. })) {
-            figures.push(("comparison", self.comparison()));
-        }
+        let mut figures = vec![
+            ("relaxation", self.relaxation()),
+            ("loss", self.loss()),
+            ("storage", self.storage()),
+            ("loss_tangent", self.loss_tangent()),
+        ];
         if self.reference != Reference::None {
             figures.push(("deviation", self.deviation()));
         }
         figures
     }
 
-    /// Figure 3a: the relaxation modulus over the band.
+    /// Figure 3a: the relaxation modulus, inside and outside the band.
     fn relaxation(&self) -> Figure {
-        let times = self.band.samples(400);
-        let mut curves = self.curves(|series, t| series.instantaneous * series.prony.relaxation(t), &times);
-        curves.extend(self.reference_curves(&times, Test::Relaxation, |law, t| law.relaxation(t), 0));
-        let label = format!("relaxation modulus {}(t), Pa", self.symbol);
-        Figure {
-            title: "Relaxation modulus".into(),
-            x: Axis::log("time t, s").over(self.band.from, self.band.to),
-            y: Axis::linear(label),
-            curves,
-            shaded: None,
-        }
-    }
-
-    /// Figure 3b: storage (solid) and loss modulus (dashed).
-    fn moduli(&self) -> Figure {
-        let frequencies = self.frequencies().samples(600);
-        let modulus = |series: &Series, w: f64| series.instantaneous * series.prony.complex_modulus(w);
-        let mut curves = self.curves(|series, w| modulus(series, w).re, &frequencies);
-        curves.iter_mut().for_each(|curve| curve.label = format!("{}′, {}", self.symbol, curve.label));
-        let mut loss = self.curves(|series, w| modulus(series, w).im, &frequencies);
-        for curve in &mut loss {
-            curve.label = format!("{}″, {}", self.symbol, curve.label);
-            curve.stroke = Stroke::Dashed;
-        }
-        curves.extend(loss);
-        curves.extend(self.reference_curves(&frequencies, Test::Dynamic, |law, w| law.complex_modulus(w).re, 0));
-        curves.extend(self.reference_curves(&frequencies, Test::Dynamic, |law, w| law.complex_modulus(w).im, 1));
-        Figure {
-            title: "Storage and loss modulus".into(),
-            x: self.frequency_axis(),
-            y: Axis::log(format!("{s}′ and {s}″, Pa", s = self.symbol)),
-            curves,
-            shaded: Some(self.frequencies_of_the_data()),
-        }
-    }
-
-    /// Figure 3c: the loss tangent.
-    fn loss_tangent(&self) -> Figure {
-        let frequencies = self.frequencies().samples(600);
-        let tangent = |modulus: nalgebra::Complex<f64>| modulus.im / modulus.re;
-        let mut curves = self.curves(|series, w| tangent(series.prony.complex_modulus(w)), &frequencies);
-        curves.extend(self.reference_curves(&frequencies, Test::Dynamic, |law, w| tangent(law.complex_modulus(w)), 2));
-        Figure {
-            title: "Loss tangent".into(),
-            x: self.frequency_axis(),
-            y: Axis::linear(format!("tan δ = {s}″/{s}′", s = self.symbol)),
-            curves,
-            shaded: Some(self.frequencies_of_the_data()),
-        }
-    }
-
-    /// Figure 3d: what the series stand for beside them, beyond the band too.
-    fn comparison(&self) -> Figure {
         let times = self.times().samples(600);
         let mut curves = self.curves(|series, t| series.instantaneous * series.prony.relaxation(t), &times);
-        curves.extend(self.reference_curves(&times, Test::Relaxation, |law, t| law.relaxation(t), 0));
+        curves.extend(self.reference_curves(&times, Test::Relaxation, |law, t| law.relaxation(t), |data, _| data));
+        let shaded = match self.reference {
+            Reference::None => "band",
+            _ => "band of the data",
+        };
         Figure {
-            title: "The series inside and outside the band of the data".into(),
-            x: self.time_axis(),
-            y: Axis::log(format!("relaxation modulus {}(t), Pa", self.symbol)),
-            curves,
-            shaded: Some((self.band, "band of the data".into())),
+            shaded: Some((self.band, shaded.into())),
+            ..Figure::new("Relaxation modulus", self.time_axis(), Axis::log(format!("{}(t), Pa", self.symbol)), curves)
         }
+    }
+
+    /// Figure 3b: the loss modulus.
+    fn loss(&self) -> Figure {
+        let axis = Axis::log(format!("{}″(ω), Pa", self.symbol));
+        self.dynamic("Loss modulus", axis, |modulus| modulus.im, |_, loss| loss)
+    }
+
+    /// Figure 3c: the storage modulus.
+    fn storage(&self) -> Figure {
+        let axis = Axis::log(format!("{}′(ω), Pa", self.symbol));
+        self.dynamic("Storage modulus", axis, |modulus| modulus.re, |storage, _| storage)
+    }
+
+    /// Figure 3d: the loss tangent.
+    fn loss_tangent(&self) -> Figure {
+        let axis = Axis::linear(format!("tan δ = {s}″/{s}′", s = self.symbol));
+        self.dynamic("Loss tangent", axis, |modulus| modulus.im / modulus.re, |storage, loss| loss / storage)
+    }
+
+    /// Part of the complex modulus against the frequency, and the same of measured storage and loss moduli.
+    fn dynamic(
+        &self,
+        title: &str,
+        axis: Axis,
+        part: impl Fn(nalgebra::Complex<f64>) -> f64,
+        measured: impl Fn(f64, f64) -> f64,
+    ) -> Figure {
+        let frequencies = self.frequencies().samples(600);
+        let modulus = |series: &Series, w: f64| series.instantaneous * series.prony.complex_modulus(w);
+        let mut curves = self.curves(|series, w| part(modulus(series, w)), &frequencies);
+        let law = |law: Fractional, w: f64| part(law.complex_modulus(w));
+        curves.extend(self.reference_curves(&frequencies, Test::Dynamic, law, measured));
+        let shaded = Some(self.frequencies_of_the_data());
+        Figure { shaded, ..Figure::new(title, self.frequency_axis(), axis, curves) }
     }
 
     /// The relative deviation of the relaxation modulus, in percent, with the 5 % that a series is trusted to.
@@ -179,11 +163,13 @@ impl MaterialFigures<'_> {
             _ => self.time_axis(),
         };
         Figure {
-            title: "Deviation of the series from what it stands for".into(),
-            x: x.over(within.from, within.to),
-            y: Axis::linear(format!("deviation of {}, %", self.symbol)).over(-20.0, 20.0),
-            curves,
             shaded: matches!(self.reference, Reference::Law(_)).then(|| (self.band, "band of the data".into())),
+            ..Figure::new(
+                "Deviation of the series from what it stands for",
+                x.over(within.from, within.to),
+                Axis::linear(format!("deviation of {}, %", self.symbol)).over(-20.0, 20.0),
+                curves,
+            )
         }
     }
 
@@ -246,48 +232,37 @@ impl MaterialFigures<'_> {
     }
 
     fn curves(&self, value: impl Fn(&Series, f64) -> f64, at: &[f64]) -> Vec<Curve> {
-        let curve = |(i, series): (usize, &Series)| Curve {
-            label: series.label.into(),
-            points: at.iter().map(|&x| (x, value(series, x))).collect(),
-            colour: PALETTE[i % PALETTE.len()],
-            stroke: Stroke::Solid,
+        let curve = |(i, series): (usize, &Series)| {
+            let points = at.iter().map(|&x| (x, value(series, x))).collect();
+            Curve::line(series.label, points, PALETTE[i % PALETTE.len()])
         };
         self.series.iter().enumerate().map(curve).collect()
     }
 
-    /// The power law as a black line, or the data as rings: part 0 is the relaxation or storage modulus, 1 the loss
-    /// modulus, 2 the loss tangent. Data of the other test have nothing to show.
+    /// The power law as a black line, or the data as rings: of the relaxation modulus, or of the storage and the loss
+    /// modulus. Data of the other test have nothing to show.
     fn reference_curves(
         &self,
         at: &[f64],
         test: Test,
         law: impl Fn(Fractional, f64) -> f64,
-        part: usize,
+        measured: impl Fn(f64, f64) -> f64,
     ) -> Option<Curve> {
         match self.reference {
-            Reference::None => None,
-            Reference::Law(fractional) => Some(Curve {
-                // The loss modulus of the law is the second black line; one entry is enough.
-                label: if part == 1 { String::new() } else { "power law".into() },
-                points: at.iter().map(|&x| (x, law(fractional, x))).collect(),
-                colour: REFERENCE,
-                stroke: Stroke::Dotted,
-            }),
-            Reference::Data(samples) if samples.test == test => {
-                let (storage, loss) = samples.values.split_at(samples.at.len());
-                let value = |i: usize| match part {
-                    0 => storage[i],
-                    1 => loss[i],
-                    _ => loss[i] / storage[i],
-                };
-                Some(Curve {
-                    label: if part == 1 { String::new() } else { "data".into() },
-                    points: samples.at.iter().enumerate().map(|(i, &x)| (x, value(i))).collect(),
-                    colour: REFERENCE,
-                    stroke: Stroke::Points,
-                })
+            Reference::Law(fractional) => {
+                let points = at.iter().map(|&x| (x, law(fractional, x))).collect();
+                Some(Curve::line("power law", points, REFERENCE).stroked(Stroke::Dotted))
             }
-            Reference::Data(_) => None,
+            Reference::Data(samples) if samples.test == test => {
+                // Relaxation data have no second half.
+                let value = |i: usize| {
+                    let second = samples.values.get(samples.at.len() + i).copied().unwrap_or_default();
+                    measured(samples.values[i], second)
+                };
+                let points = samples.at.iter().enumerate().map(|(i, &x)| (x, value(i))).collect();
+                Some(Curve::line("data", points, REFERENCE).stroked(Stroke::Points))
+            }
+            Reference::None | Reference::Data(_) => None,
         }
     }
 }
@@ -324,14 +299,19 @@ impl Solid {
         }
     }
 
+    /// Whether the figures of both are the same.
+    pub fn is_like(&self, other: &Self) -> bool {
+        Self { label: String::new(), ..self.clone() } == Self { label: String::new(), ..other.clone() }
+    }
+
     /// Its entry in the legend.
     pub fn label(&self) -> &str {
         &self.label
     }
 }
 
-/// Figure 3 of any materials on one sheet, beside the power law of the shear modulus that they stand for; and the
-/// Poisson ratio where it changes.
+/// Figure 3 of any materials on one sheet, beside the power law of Young's modulus that they stand for; and the Poisson
+/// ratio where it changes.
 pub fn sheet(solids: &[Solid], law: Option<Fractional>) -> Sheet {
     let times = || solids.iter().flat_map(|solid| &solid.prony.arms).map(|arm| arm.time);
     let (low, high) = times().fold((f64::INFINITY, 0.0f64), |(low, high), t| (low.min(t), high.max(t)));
@@ -339,20 +319,32 @@ pub fn sheet(solids: &[Solid], law: Option<Fractional>) -> Sheet {
     let (first, last) = if low <= high { (low.log10().floor(), high.log10().ceil()) } else { (-1.0, 1.0) };
     let last = last.max(first + 2.0);
     let band = Band { from: 10f64.powf(first), to: 10f64.powf(last) };
+    let varies = solids.iter().any(|solid| solid.poisson_varies);
+    // E relaxes as G does where the Poisson ratio stays; a power law is one of E in any case.
+    let young = law.is_some() || !varies;
     let series = solids.iter().map(|solid| Series {
         label: &solid.label,
-        instantaneous: solid.shear_modulus,
+        instantaneous: if young { 2.0 * (1.0 + solid.poisson.instantaneous) } else { 1.0 } * solid.shear_modulus,
         prony: &solid.prony,
     });
     let reference = law.map_or(Reference::None, Reference::Law);
-    let figures = MaterialFigures { symbol: "G", series: series.collect(), reference, band };
-    let mut figures: Vec<Figure> = figures.all().into_iter().map(|(_, figure)| figure).collect();
-    if solids.iter().any(|solid| solid.poisson_varies) {
+    let figures = MaterialFigures { symbol: if young { "E" } else { "G" }, series: series.collect(), reference, band };
+    let mut figures: Vec<Figure> = figures.all().into_iter().take(4).map(|(_, figure)| figure).collect();
+    if varies {
         let all: Vec<_> = solids.iter().map(|solid| (solid.label.as_str(), &solid.poisson)).collect();
         figures.push(poisson_figure(&all, band));
     }
     // The band is that of the relaxation times; nothing was measured and no history is known.
     figures.iter_mut().for_each(|figure| figure.shaded = None);
-    let columns = if figures.len() > 1 { 2 } else { 1 };
-    Sheet::of_curves(figures, columns, (760, 520))
+    let mut note = Vec::new();
+    if let Some(law) = law {
+        let Fractional { modulus, order } = law;
+        note.push(format!(
+            "power law: E_{{f}}(t) = E_{{f,0}} t^{{−{order}}} / Γ(1 − {order}), E_{{f,0}} = {modulus} Pa s^{{{order}}}"
+        ));
+    }
+    if young && varies {
+        note.push("E(t) = 2 (1 + ν(0)) G(t)".into());
+    }
+    Sheet::in_pairs(figures, 400).noting(note.join("; "))
 }

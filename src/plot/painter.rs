@@ -6,8 +6,10 @@ use plotters::prelude::{DrawingArea, DrawingBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, TextStyle};
 
+use super::axes::Mapping;
+use super::text::{Run, runs};
 use super::ticks::Tick;
-use super::{Colour, Curve, Scale, Stroke};
+use super::{Colour, Curve, Stroke};
 use crate::error::{Error, Result};
 
 /// Drawing units per px.
@@ -15,11 +17,12 @@ pub const UNIT: u32 = 4;
 /// The embedded font by its name, and what a viewer of an SVG without it may take instead.
 pub const FONT: &str = "DejaVu Sans, Verdana, sans-serif";
 /// Size of the labels of axes, px.
-pub const LABEL: f64 = 18.0;
+pub const LABEL: f64 = 17.0;
 /// Size of the labels of ticks and of the legend, px.
 pub const TICK: f64 = 15.0;
 
-const INK: Colour = (40, 40, 40);
+/// Of texts and frames.
+pub const INK: Colour = (40, 40, 40);
 const GRID: Colour = (225, 225, 225);
 
 /// A rectangle, px, y downwards.
@@ -33,30 +36,6 @@ pub struct Frame {
     pub right: f64,
     /// px
     pub bottom: f64,
-}
-
-/// From values to positions along one side of the frame.
-pub struct Mapping {
-    /// How values become positions.
-    pub scale: Scale,
-    /// The values at the two ends.
-    pub range: (f64, f64),
-    /// The positions of the two ends, px.
-    pub ends: (f64, f64),
-}
-
-impl Mapping {
-    /// The position of `value`; none where the axis has none.
-    pub fn position(&self, value: f64) -> Option<f64> {
-        let of = |value: f64| match self.scale {
-            Scale::Linear => value,
-            Scale::Log => value.ln(),
-        };
-        let part = (of(value) - of(self.range.0)) / (of(self.range.1) - of(self.range.0));
-        let position = self.ends.0 + part * (self.ends.1 - self.ends.0);
-        // Far outside is outside; the clipping must not overflow.
-        (!position.is_nan()).then_some(position.clamp(-1e9, 1e9))
-    }
 }
 
 /// Draws in px on an area of UNIT drawing units each.
@@ -154,25 +133,58 @@ impl<DB: DrawingBackend> Painter<'_, DB> {
 
     /// The width of `text`, px.
     pub fn width(&self, text: &str, size: f64) -> f64 {
+        runs(text).iter().map(|run| self.run_width(run, size)).sum()
+    }
+
+    fn run_width(&self, run: &Run, size: f64) -> f64 {
+        let (text, size) = (run.text.as_str(), run.size * size);
         let style = Self::style(size, HPos::Left);
         // Without the font, which files::fonts excludes, any estimate will do.
         let units =
             self.area.estimate_text_size(text, &style).map_or(0.6 * size * text.len() as f64, |s| f64::from(s.0));
-        units / f64::from(UNIT)
+        units / f64::from(UNIT) + if run.size < 1.0 { 0.1 * size } else { 0.0 }
     }
 
     /// Text whose digits and capitals are centred on the height of `at`.
     pub fn text(&self, text: &str, at: (f64, f64), size: f64, anchor: HPos) -> Result<()> {
-        let at = (at.0, at.1 + self.sink * size);
-        self.area.draw(&Text::new(text.to_owned(), Self::at(at), Self::style(size, anchor))).map_err(refused)
+        let put = |text: &str, (x, y): (f64, f64), size: f64, anchor| {
+            let at = (x, y + self.sink * size);
+            self.area.draw(&Text::new(text.to_owned(), Self::at(at), Self::style(size, anchor))).map_err(refused)
+        };
+        let runs = runs(text);
+        if runs.len() < 2 {
+            return put(text, at, size, anchor);
+        }
+        let mut x = match anchor {
+            HPos::Left => at.0,
+            HPos::Center => at.0 - 0.5 * self.width(text, size),
+            HPos::Right => at.0 - self.width(text, size),
+        };
+        for run in &runs {
+            put(&run.text, (x, at.1 + run.drop * size), run.size * size, HPos::Left)?;
+            x += self.run_width(run, size);
+        }
+        Ok(())
     }
 
-    /// Text that reads upwards, centred at `at`.
+    /// The label of an axis that reads upwards, centred at `at`.
     pub fn upright(&self, text: &str, at: (f64, f64)) -> Result<()> {
-        let at = (at.0 + self.sink * LABEL, at.1);
-        let mut style = Self::style(LABEL, HPos::Center);
-        style.font = style.font.transform(FontTransform::Rotate270);
-        self.area.draw(&Text::new(text.to_owned(), Self::at(at), style)).map_err(refused)
+        let put = |text: &str, (x, y): (f64, f64), size: f64, anchor| {
+            let mut style = Self::style(size, anchor);
+            style.font = style.font.transform(FontTransform::Rotate270);
+            let at = (x + self.sink * size, y);
+            self.area.draw(&Text::new(text.to_owned(), Self::at(at), style)).map_err(refused)
+        };
+        let runs = runs(text);
+        if runs.len() < 2 {
+            return put(text, at, LABEL, HPos::Center);
+        }
+        let mut y = at.1 + 0.5 * self.width(text, LABEL);
+        for run in &runs {
+            put(&run.text, (at.0 + run.drop * LABEL, y), run.size * LABEL, HPos::Left)?;
+            y -= self.run_width(run, LABEL);
+        }
+        Ok(())
     }
 
     /// A polyline, `width` px wide.
@@ -215,12 +227,25 @@ impl<DB: DrawingBackend> Painter<'_, DB> {
         disc(2.5, (255, 255, 255))
     }
 
+    /// The sign of a break between two heights, on either side of a frame.
+    pub fn gap(&self, frame: &Frame, lower: f64, upper: f64) -> Result<()> {
+        for x in [frame.left, frame.right] {
+            self.rectangle((x - 3.0, upper), (x + 3.0, lower), (255, 255, 255))?;
+            for y in [lower, upper] {
+                self.line(&[(x - 6.0, y + 3.0), (x + 6.0, y - 3.0)], INK, 1.0)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Lines at the labelled ticks.
     pub fn grid(&self, frame: &Frame, x: (&Mapping, &[Tick]), y: (&Mapping, &[Tick])) -> Result<()> {
         for at in x.1.iter().filter(|tick| tick.label.is_some()).filter_map(|tick| x.0.position(tick.at)) {
             self.line(&[(at, frame.top), (at, frame.bottom)], GRID, 1.0)?;
         }
-        for at in y.1.iter().filter(|tick| tick.label.is_some()).filter_map(|tick| y.0.position(tick.at)) {
+        let inside = |at: &f64| (frame.top..=frame.bottom).contains(at);
+        for at in y.1.iter().filter(|tick| tick.label.is_some()).filter_map(|tick| y.0.position(tick.at)).filter(inside)
+        {
             self.line(&[(frame.left, at), (frame.right, at)], GRID, 1.0)?;
         }
         Ok(())
@@ -232,16 +257,16 @@ impl<DB: DrawingBackend> Painter<'_, DB> {
         self.line(&[(left, top), (right, top), (right, bottom), (left, bottom), (left, top)], INK, 1.0)?;
         for tick in x.1 {
             let Some(at) = x.0.position(tick.at) else { continue };
-            self.line(&[(at, bottom), (at, bottom + if tick.label.is_some() { 8.0 } else { 4.0 })], INK, 1.0)?;
+            self.line(&[(at, bottom), (at, bottom + if tick.label.is_some() { 6.0 } else { 3.0 })], INK, 1.0)?;
             if let Some(label) = &tick.label {
-                self.text(label, (at, bottom + 21.0), TICK, HPos::Center)?;
+                self.text(label, (at, bottom + 18.0), TICK, HPos::Center)?;
             }
         }
         for tick in y.1 {
             let Some(at) = y.0.position(tick.at) else { continue };
-            self.line(&[(left, at), (left - if tick.label.is_some() { 8.0 } else { 4.0 }, at)], INK, 1.0)?;
+            self.line(&[(left, at), (left - if tick.label.is_some() { 6.0 } else { 3.0 }, at)], INK, 1.0)?;
             if let Some(label) = &tick.label {
-                self.text(label, (left - 12.0, at), TICK, HPos::Right)?;
+                self.text(label, (left - 10.0, at), TICK, HPos::Right)?;
             }
         }
         Ok(())
@@ -261,10 +286,17 @@ impl<DB: DrawingBackend> Painter<'_, DB> {
     /// A polyline in its stroke.
     pub fn stroke(&self, run: &[(f64, f64)], colour: Colour, stroke: Stroke) -> Result<()> {
         let strokes = match stroke {
+            Stroke::Broad => return self.line(run, pale(colour), 6.0),
             Stroke::Solid | Stroke::Points => vec![run.to_vec()],
-            Stroke::Dashed => dashes(run, (11.0, 6.0)),
-            Stroke::Dotted => dashes(run, (3.0, 4.5)),
+            Stroke::Dashed => dashes(run, (10.0, 5.0)),
+            Stroke::Dotted => dashes(run, (2.5, 4.0)),
         };
-        strokes.iter().try_for_each(|stroke| self.line(stroke, colour, 2.5))
+        strokes.iter().try_for_each(|stroke| self.line(stroke, colour, 2.0))
     }
+}
+
+/// The colour mixed with white.
+fn pale((red, green, blue): Colour) -> Colour {
+    let mix = |part: u8| (0.38 * f64::from(part) + 0.62 * 255.0) as u8;
+    (mix(red), mix(green), mix(blue))
 }

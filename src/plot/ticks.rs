@@ -15,26 +15,35 @@ pub struct Tick {
 /// axis takes out of its labels.
 pub fn ticks(scale: Scale, (from, to): (f64, f64), most: usize) -> (Vec<Tick>, i32) {
     match scale {
-        Scale::Linear => linear(from, to, most),
+        Scale::Linear => linear(&[((from, to), most)]),
         Scale::Log => (logarithmic(from, to, most), 0),
     }
 }
 
-/// Steps of 1, 2 or 5 times a power of ten.
-fn linear(from: f64, to: f64, most: usize) -> (Vec<Tick>, i32) {
-    let rough = (to - from) / most.max(2) as f64;
-    let decade = 10f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * decade).into_iter().find(|step| *step >= rough).unwrap_or(rough);
-    let magnitude = from.abs().max(to.abs()).log10().floor() as i32;
+/// Steps of 1, 2 or 5 times a power of ten on each stretch of an axis, with at most about so many labels; all with the
+/// same decimals and power of ten.
+pub fn linear(stretches: &[((f64, f64), usize)]) -> (Vec<Tick>, i32) {
+    let steps: Vec<f64> = stretches.iter().map(|&((from, to), most)| step((to - from) / most.max(2) as f64)).collect();
+    let largest = stretches.iter().fold(0.0f64, |high, ((from, to), _)| high.max(from.abs()).max(to.abs()));
+    let magnitude = largest.log10().floor() as i32;
     let exponent = if (-2..=4).contains(&magnitude) { 0 } else { magnitude };
     let unit = 10f64.powi(exponent);
-    let decimals = (-(step / unit).log10().floor()).max(0.0) as usize;
-    let (first, last) = ((from / step - 1e-9).ceil() as i64, (to / step + 1e-9).floor() as i64);
-    let tick = |i: i64| {
-        let at = i as f64 * step;
-        Tick { at, label: Some(minus(format!("{:.decimals$}", at / unit))) }
+    let finest = steps.iter().fold(f64::INFINITY, |low, step| low.min(*step));
+    let decimals = (-(finest / unit).log10().floor()).max(0.0) as usize;
+    let of = |((from, to), step): ((f64, f64), f64)| {
+        let (first, last) = ((from / step - 1e-9).ceil() as i64, (to / step + 1e-9).floor() as i64);
+        (first..=last).map(move |i| {
+            let at = i as f64 * step;
+            Tick { at, label: Some(minus(&format!("{:.decimals$}", at / unit))) }
+        })
     };
-    ((first..=last).map(tick).collect(), exponent)
+    (stretches.iter().map(|(range, _)| *range).zip(steps).flat_map(of).collect(), exponent)
+}
+
+/// The step of 1, 2 or 5 times a power of ten that is `rough` or a little more.
+fn step(rough: f64) -> f64 {
+    let decade = 10f64.powf(rough.log10().floor());
+    [1.0, 2.0, 5.0, 10.0].map(|m| m * decade).into_iter().find(|step| *step >= rough).unwrap_or(rough)
 }
 
 /// Decades, with 2 to 9 between them as minor ticks; on a short axis some of those are labelled too.
@@ -50,6 +59,7 @@ fn logarithmic(from: f64, to: f64, most: usize) -> Vec<Tick> {
         &[1, 2, 3, 4, 5, 6, 7, 8, 9]
     };
     let minor = if decades > 12.0 { 1..=1 } else { 1..=9 };
+    let powers = decades > 2.5 || first < -3 || last > 4;
     let mut ticks = Vec::new();
     for decade in first..=last {
         for digit in minor.clone() {
@@ -58,21 +68,21 @@ fn logarithmic(from: f64, to: f64, most: usize) -> Vec<Tick> {
                 continue;
             }
             let label = labelled.contains(&digit) && (decade % every == 0 || decades <= 2.5);
-            let text = || if decades > 2.5 { power(decade) } else { plain(digit, decade) };
+            let text = || if powers { scientific(digit, decade) } else { plain(digit, decade) };
             ticks.push(Tick { at, label: label.then(text) });
         }
     }
     ticks
 }
 
-/// digit 10^decade: plainly where that is short.
+/// digit 10^decade, plainly.
 fn plain(digit: u32, decade: i32) -> String {
-    match decade {
-        -3..=-1 => format!("{:.*}", decade.unsigned_abs() as usize, f64::from(digit) * 10f64.powi(decade)),
-        0..=4 => format!("{}", f64::from(digit) * 10f64.powi(decade)),
-        _ if digit == 1 => power(decade),
-        _ => format!("{digit}·{}", power(decade)),
-    }
+    format!("{:.*}", (-decade).max(0) as usize, f64::from(digit) * 10f64.powi(decade))
+}
+
+/// digit 10^decade, as a power of ten.
+fn scientific(digit: u32, decade: i32) -> String {
+    if digit == 1 { power(decade) } else { format!("{digit}·{}", power(decade)) }
 }
 
 /// 10 to the power of `exponent`.
@@ -88,7 +98,7 @@ pub fn power(exponent: i32) -> String {
 }
 
 /// With a minus sign in place of the hyphen.
-fn minus(text: String) -> String {
+pub fn minus(text: &str) -> String {
     text.replace('-', "−")
 }
 
@@ -111,6 +121,10 @@ mod tests {
             labels(Scale::Linear, (0.0, 5e-4), 5),
             (["0", "1", "2", "3", "4", "5"].map(String::from).to_vec(), -4)
         );
+        // Both stretches of a broken axis in one format.
+        let (broken, _) = linear(&[((0.0, 0.1), 3), ((1.4, 1.6), 2)]);
+        let broken: Vec<_> = broken.into_iter().filter_map(|tick| tick.label).collect();
+        assert_eq!(broken, ["0.00", "0.05", "0.10", "1.40", "1.50", "1.60"]);
         assert_eq!(labels(Scale::Linear, (0.0, 3e6), 4), (["0", "1", "2", "3"].map(String::from).to_vec(), 6));
     }
 

@@ -24,11 +24,10 @@ pub fn work_precision(title: &str, climbed: &[Climbed], advised: &[Option<Advice
     let label = "advised, all settings together".to_owned();
     let advice = Curve { label, points, colour: REFERENCE, stroke: Stroke::Points };
     let lines = climbed.iter().enumerate().map(curve);
-    Figure {
-        title: title.to_owned(),
-        x: Axis::log("time of the run, s"),
-        y: Axis::log("error of the forces, relative"),
-        curves: lines.chain(climbed.iter().enumerate().map(rings)).chain([advice]).collect(),
-        shaded: None,
-    }
+    Figure::new(
+        title,
+        Axis::log("time of the run, s"),
+        Axis::log("error of the forces, relative"),
+        lines.chain(climbed.iter().enumerate().map(rings)).chain([advice]).collect(),
+    )
 }

@@ -2,56 +2,53 @@
 
 use super::Run;
 use crate::error::Result;
-use crate::plot::{Axis, Curve, Figure, PALETTE, REFERENCE, Sheet, Stroke};
+use crate::plot::{Axis, Curve, Figure, PALETTE, Sheet, Stroke};
 use crate::scene::Friction;
 
 /// Normal, tangential and hysteretic force; dotted lines where a phase ends.
 pub fn sheet(run: &Run) -> Result<Sheet> {
     let history = &run.history;
-    let friction = run.scene.friction.as_ref().map_or(0.0, Friction::coefficient);
-    let envelope: Vec<f64> = history.normal.iter().map(|normal| friction * normal).collect();
-    let mut tangential = vec![force(run, "Q", &history.tangential, 1)];
-    if friction > 0.0 {
-        let label = format!("f N with f = {friction}");
-        let curve = Curve { colour: REFERENCE, stroke: Stroke::Dashed, ..force(run, &label, &envelope, 1) };
-        tangential.push(curve);
-    }
-    let normal = vec![force(run, "N", &history.normal, 0)];
-    let hysteretic = vec![force(run, "hysteretic force", &history.hysteretic, 2)];
-    let figure = |title: String, label: &str, curves: Vec<Curve>| {
-        let mut figure = Figure {
-            title,
-            x: Axis::linear("time t, s"),
-            y: Axis::linear(format!("{label}, N/m")),
-            curves,
-            shaded: None,
-        };
-        phase_ends(run, &mut figure);
-        figure
+    let curve = |values: &[f64], colour: usize| against_time(run, "", values).coloured(PALETTE[colour]);
+    let tangential = limits(run).into_iter().chain([curve(&history.tangential, 1)]).collect();
+    let figure = |title: &str, label: &str, curves: Vec<Curve>, first: bool| {
+        with_phases(run, Figure::new(title, Axis::linear("time t, s"), Axis::linear(label), curves), first)
     };
     let figures = vec![
-        figure(format!("(a) {}", run.scene.title), "normal force N", normal),
-        figure("(b) tangential force".into(), "tangential force Q", tangential),
-        figure("(c) hysteretic force".into(), "∫ p ∂h/∂x dx", hysteretic),
+        figure("Normal force", "N, N/m", vec![curve(&history.normal, 0)], true),
+        figure("Tangential force", "Q, N/m", tangential, false),
+        figure("Hysteretic force", "∫ p ∂h/∂x dx, N/m", vec![curve(&history.hysteretic, 2)], false),
     ];
-    Ok(Sheet::of_curves(figures, 1, (900, 380)))
+    Ok(Sheet::stacked(figures, 320))
 }
 
-fn force(run: &Run, label: &str, values: &[f64], colour: usize) -> Curve {
-    Curve {
-        label: label.into(),
-        points: run.history.time.iter().copied().zip(values.iter().copied()).collect(),
-        colour: PALETTE[colour],
-        stroke: Stroke::Solid,
+/// A column of the history.
+pub(super) fn against_time(run: &Run, label: &str, values: &[f64]) -> Curve {
+    Curve::line(label, run.history.time.iter().copied().zip(values.iter().copied()).collect(), PALETTE[0])
+}
+
+/// The force at which all would slip, in the directions that the tangential force takes.
+pub(super) fn limits(run: &Run) -> Vec<Curve> {
+    let friction = run.scene.friction.as_ref().map_or(0.0, Friction::coefficient);
+    let history = &run.history;
+    let limit = |sign: f64, label: &str| {
+        let values: Vec<f64> = history.normal.iter().map(|normal| sign * friction * normal).collect();
+        against_time(run, label, &values).coloured((130, 130, 130)).stroked(Stroke::Broad)
+    };
+    let (low, high) = history.tangential.iter().fold((0.0f64, 0.0f64), |(low, high), q| (low.min(*q), high.max(*q)));
+    match friction {
+        0.0 => Vec::new(),
+        _ if low < -0.05 * high => vec![limit(1.0, "±f N"), limit(-1.0, "")],
+        _ => vec![limit(1.0, "f N")],
     }
 }
 
-/// Dotted lines over the whole height where a phase ends, but for the last.
-pub(super) fn phase_ends(run: &Run, figure: &mut Figure) {
+/// The figure with dotted lines over its whole height where a phase ends, but for the last; the first figure of a sheet
+/// names them for all.
+pub(super) fn with_phases(run: &Run, mut figure: Figure, named: bool) -> Figure {
     let values = || figure.curves.iter().flat_map(|curve| &curve.points).map(|p| p.1).filter(|v| v.is_finite());
     let (low, high) = values().fold((0.0f64, 0.0f64), |(low, high), v| (low.min(v), high.max(v)));
     let air = 0.06 * (high - low);
-    figure.y = figure.y.clone().over(low - air, high + air);
+    figure.y = figure.y.over(low - air, high + air);
     let phases = &run.scene.phases;
     let last = run.scene.duration();
     let mut ends: Vec<(f64, String)> = Vec::new();
@@ -65,11 +62,9 @@ pub(super) fn phase_ends(run: &Run, figure: &mut Figure) {
         }
     }
     for (i, (end, names)) in ends.into_iter().enumerate() {
-        figure.curves.push(Curve {
-            label: format!("end of {names}"),
-            points: vec![(end, low - air), (end, high + air)],
-            colour: PALETTE[3 + i % 3],
-            stroke: Stroke::Dotted,
-        });
+        let label = if named { format!("end of {names}") } else { String::new() };
+        let line = Curve::line(label, vec![(end, low - air), (end, high + air)], PALETTE[3 + i % 3]);
+        figure.curves.push(line.stroked(Stroke::Dotted));
     }
+    figure
 }

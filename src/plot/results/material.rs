@@ -6,11 +6,11 @@ use crate::plot::Sheet;
 use crate::plot::material::Solid;
 use crate::scene::Material;
 
-/// Relaxation, storage and loss modulus, loss tangent, Poisson ratio.
+/// Relaxation, loss and storage modulus, loss tangent, Poisson ratio.
 pub fn sheet(run: &Run) -> Result<Sheet> {
     let solid = |material: &Material| {
         let place = material.region.clone().or(material.thickness.map(|thickness| format!("{thickness} m")));
         Solid::of(material, &place.unwrap_or_default())
     };
-    Ok(crate::plot::material::sheet(&run.scene.materials.iter().map(solid).collect::<Vec<_>>(), None))
+    Ok(crate::plot::material::sheet(&run.scene.materials.iter().map(solid).collect::<Vec<_>>(), run.law))
 }

@@ -1,6 +1,7 @@
 //! Figures of one run, from its result file; one module each.
 
 mod energy;
+mod face;
 mod history;
 mod material;
 mod profile;
@@ -8,14 +9,20 @@ mod reactions;
 mod stick_slip;
 mod stress;
 mod tractions;
+mod unit;
 
 use std::path::{Path, PathBuf};
 
+use self::face::Face;
+pub use self::reactions::Closed;
+use self::unit::Unit;
 use super::Sheet;
+use super::ticks::{minus, power};
 use crate::error::{Error, Result};
 use crate::output::Status;
 use crate::output::reader::{Field, Results};
-use crate::scene::{self, Scene, Source};
+use crate::rheology::Fractional;
+use crate::scene::{self, Motion, Scene, Source};
 
 /// A run: its scene and its results.
 #[derive(Debug)]
@@ -26,8 +33,10 @@ pub struct Run {
     pub scene: Scene,
     /// The history of forces.
     pub history: History,
-    /// Radius of the half disk whose closed forms are drawn beside the reactions, m.
-    pub half_disk: Option<f64>,
+    /// The closed forms beside the reactions.
+    pub closed: Option<Closed>,
+    /// The power law of Young's modulus that the material stands for.
+    pub law: Option<Fractional>,
     results: Results,
 }
 
@@ -83,7 +92,7 @@ pub const FIGURES: [Kind; 8] = [
     Kind { name: "history", shows: "forces against time", lacks: |_| None, sheet: history::sheet },
     Kind {
         name: "reactions",
-        shows: "forces against the imposed displacements (Figures A1 to A3)",
+        shows: "imposed displacements and forces against time (Figures A1 to A3)",
         lacks: |_| None,
         sheet: reactions::sheet,
     },
@@ -125,7 +134,7 @@ pub const FIGURES: [Kind; 8] = [
     },
     Kind {
         name: "material",
-        shows: "relaxation, storage and loss moduli, loss tangent (Figure 3)",
+        shows: "relaxation, loss and storage moduli, loss tangent (Figure 3)",
         lacks: |_| None,
         sheet: material::sheet,
     },
@@ -151,9 +160,16 @@ impl Run {
     pub fn open(path: &Path) -> Result<Self> {
         let results = Results::open(path)?;
         let scene = scene::read(&results.text("scene")?, &Source { file: path.to_owned(), overrides: Vec::new() })?;
-        let column = |name: &str| results.history(name);
+        let time = results.history("time")?;
+        let refused = |reason: String| Error::file(path, format!("is damaged: {reason}"));
+        if time.is_empty() || time.iter().any(|t| !t.is_finite()) {
+            return Err(refused("/history/time has no times, or some that are no numbers".into()));
+        }
+        let column = |name: &str| match results.history(name)? {
+            values if values.len() == time.len() => Ok(values),
+            values => Err(refused(format!("/history/{name} has {} values for {} times", values.len(), time.len()))),
+        };
         let history = History {
-            time: column("time")?,
             phase: column("phase")?.into_iter().map(|phase| phase as usize).collect(),
             approach: column("approach")?,
             sliding: column("sliding")?,
@@ -162,8 +178,9 @@ impl Run {
             hysteretic: column("hysteretic_force")?,
             contact: column("contact_fraction")?,
             stick: column("stick_fraction")?,
+            time,
         };
-        Ok(Self { path: path.to_owned(), scene, history, half_disk: None, results })
+        Ok(Self { path: path.to_owned(), scene, history, closed: None, law: None, results })
     }
 
     /// Whether all phases were solved.
@@ -178,7 +195,8 @@ impl Run {
 
     /// A cumulative energy, J/m; none in files without.
     pub fn energy(&self, name: &str) -> Option<Vec<f64>> {
-        self.results.history(&format!("energy/{name}")).ok()
+        let values = self.results.history(&format!("energy/{name}")).ok()?;
+        (values.len() == self.history.time.len()).then_some(values)
     }
 
     /// The length after which the face repeats itself: the indenter's, or the layer's; none = it does not.
@@ -190,9 +208,17 @@ impl Run {
         }
     }
 
-    /// By how much a periodic face is shifted to show the first contact in the middle, m.
-    fn shift(&self) -> f64 {
-        self.period().map_or(0.0, |period| 0.5 * period)
+    /// Of the indenter in the last phase, m/s; none where it does not end at one.
+    pub fn velocity(&self) -> Option<f64> {
+        match self.scene.phases.last()?.motion {
+            Motion::Velocity(velocity) if velocity != 0.0 => Some(velocity.abs()),
+            _ => None,
+        }
+    }
+
+    /// How far the indenter has slid at about `time`, m.
+    fn slid(&self, time: f64) -> f64 {
+        self.history.sliding[nearest(&self.history.time, time)]
     }
 
     fn lacks_interface(&self) -> Option<&'static str> {
@@ -200,67 +226,42 @@ impl Run {
         (!found).then_some("no interface profiles")
     }
 
-    fn interface(&self) -> Result<Interface> {
-        Ok(Interface {
-            x: self.results.interface("x")?.values,
-            time: self.results.interface("time")?.values,
-            period: self.scene.period().unwrap_or(f64::INFINITY),
-            shift: self.shift(),
-        })
+    fn face(&self) -> Result<Face<'_>> {
+        Face::of(self)
+    }
+
+    /// A field with as many values in each of `rows` rows as it must have, all of them numbers.
+    fn checked(&self, name: &str, field: Field, (rows, columns): (usize, usize)) -> Result<Field> {
+        let whole = field.rows == rows && field.columns == columns && field.values.len() == rows * columns;
+        let reason = match field.values.iter().find(|value| !value.is_finite()) {
+            _ if !whole => format!("is {} x {} and not {rows} x {columns}", field.rows, field.columns),
+            Some(value) => format!("holds {value}"),
+            None => return Ok(field),
+        };
+        Err(Error::file(&self.path, format!("is damaged: /{name} {reason}")))
     }
 }
 
-/// Where and when the interface profiles stand.
-struct Interface {
-    /// m
-    x: Vec<f64>,
-    /// s
-    time: Vec<f64>,
-    /// After which the face is itself again, m.
-    period: f64,
-    /// m
-    shift: f64,
-}
-
-impl Interface {
-    /// The label of the axis along the face.
-    fn label(&self) -> &'static str {
-        if self.shift > 0.0 { "x, m (shifted by half a period)" } else { "x, m" }
-    }
-
-    /// Where a node is shown, m.
-    fn place(&self, x: f64) -> f64 {
-        if self.shift == 0.0 { x } else { (x + self.shift).rem_euclid(self.period) - self.shift }
-    }
-
-    /// The profile of `field` at frame `frame`, in the order of the places.
-    fn profile(&self, field: &Field, frame: usize) -> Vec<(f64, f64)> {
-        let row = field.row(frame);
-        let mut points: Vec<(f64, f64)> = self.x.iter().zip(row).map(|(x, value)| (self.place(*x), *value)).collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        points
-    }
-
-    /// The frame nearest to `time`.
-    fn at(&self, time: f64) -> usize {
-        nearest(&self.time, time)
-    }
-
-    /// The frames from `from` to `to`, a rounding apart, s.
-    fn between(&self, from: f64, to: f64) -> Vec<usize> {
-        let slack = 1e-9 * to.abs();
-        (0..self.time.len()).filter(|&i| self.time[i] >= from - slack && self.time[i] <= to + slack).collect()
-    }
-}
-
-/// A number in `digits` significant digits, without trailing zeros.
+/// A number in `digits` significant digits, without trailing zeros; a power of ten where it is long.
 pub(super) fn short(value: f64, digits: i32) -> String {
-    if value == 0.0 {
-        return "0".into();
+    if value == 0.0 || !value.is_finite() {
+        return minus(&value.to_string());
     }
-    let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, 12) as usize;
-    let text = format!("{value:.decimals$}");
+    let exponent = value.abs().log10().floor() as i32;
+    if !(-4..6).contains(&exponent) {
+        return format!("{}·{}", short(value / 10f64.powi(exponent), digits), power(exponent));
+    }
+    let decimals = (digits - 1 - exponent).max(0) as usize;
+    let text = minus(&format!("{value:.decimals$}"));
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// Numbers in as many decimals as tell them apart, and one more.
+pub(super) fn alike(values: &[f64]) -> Vec<String> {
+    let apart = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
+    let least = apart.fold(f64::INFINITY, f64::min);
+    let decimals = if least.is_finite() { (1.0 - least.log10().floor()).clamp(0.0, 9.0) as usize } else { 2 };
+    values.iter().map(|value| minus(&format!("{value:.decimals$}"))).collect()
 }
 
 /// The index of the value nearest to `wanted`.
@@ -288,9 +289,10 @@ mod tests {
         assert_eq!(spread(&[5, 6, 7], 1), [7]);
         assert!(spread::<u8>(&[], 4).is_empty());
         assert_eq!(
-            [0.0, 1e-3, 2.154e-3, 10.0, 66.011606, 123456.0].map(|v| short(v, 4)),
-            ["0", "0.001", "0.002154", "10", "66.01", "123456"]
+            [0.0, 1e-3, 2.154e-3, 10.0, 66.011606, -123456.0, 7.3e10, 1.5e-7].map(|v| short(v, 4)),
+            ["0", "0.001", "0.002154", "10", "66.01", "−123456", "7.3·10¹⁰", "1.5·10⁻⁷"]
         );
+        assert_eq!(alike(&[0.0, 0.25, 1.0]), ["0.00", "0.25", "1.00"]);
         assert_eq!(nearest(&[0.0, 1.0, 2.0], 1.4), 1);
     }
 }

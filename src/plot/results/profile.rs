@@ -1,54 +1,42 @@
 //! The indenter and the face under it.
 
-use super::{Interface, Run, short};
+use super::face::Face;
+use super::{Run, short};
 use crate::error::Result;
 use crate::output::reader::Field;
 use crate::plot::{Axis, Curve, Figure, PALETTE, REFERENCE, Sheet, Stroke};
 
-/// At the end of the approach and at the end: the profile where it stands, and the face as it is deformed.
+/// At the end of the approach and at the end: the profile where it stands, and the face as it is deformed, around the
+/// contact.
 pub fn sheet(run: &Run) -> Result<Sheet> {
-    let interface = run.interface()?;
-    let fields = Fields { gap: run.results.interface("gap")?, face: run.results.interface("displacement_z")? };
-    let first = interface.at(run.approach_time());
-    let last = interface.time.len() - 1;
-    let mut figures = vec![figure(
-        &interface,
-        &fields,
-        first,
-        format!("(a) end of the approach, t = {}", seconds(&interface, first)),
-    )];
+    let face = run.face()?;
+    let fields = Fields { gap: face.field("gap")?, height: face.field("displacement_z")? };
+    let first = face.at(run.approach_time());
+    let last = face.time.len() - 1;
+    let seconds = |frame: usize| format!("t = {} s", short(face.time[frame], 4));
+    let mut figures = vec![figure(&face, &fields, first, format!("End of the approach, {}", seconds(first)))];
     if last != first {
-        let end = interface.time[last];
-        let row = super::nearest(&run.history.time, end);
-        let sliding = run.history.sliding[row];
-        let title = format!("(b) t = {}, after sliding by {} m", seconds(&interface, last), short(sliding, 4));
-        figures.push(figure(&interface, &fields, last, title));
+        let slid = short(run.slid(face.time[last]), 4);
+        figures.push(figure(&face, &fields, last, format!("End, {}, after sliding by {slid} m", seconds(last))));
     }
-    Ok(Sheet::of_curves(figures, 1, (900, 480)))
+    Ok(Sheet::stacked(figures, 400))
 }
 
 struct Fields {
     gap: Field,
-    face: Field,
+    height: Field,
 }
 
-fn seconds(interface: &Interface, frame: usize) -> String {
-    format!("{} s", short(interface.time[frame], 4))
-}
-
-fn figure(interface: &Interface, fields: &Fields, frame: usize, title: String) -> Figure {
-    let face = interface.profile(&fields.face, frame);
-    let gap = interface.profile(&fields.gap, frame);
+fn figure(face: &Face, fields: &Fields, frame: usize, title: String) -> Figure {
+    let window = face.window(&[frame]);
+    let shown = |(x, _): &(f64, f64)| (window.ends.0..=window.ends.1).contains(x);
+    let cut = |field: &Field| face.profile(field, frame, &window).into_iter().filter(shown).collect::<Vec<_>>();
+    let (surface, gap) = (cut(&fields.height), cut(&fields.gap));
     // The gap is what lies between the face and the indenter.
-    let indenter = face.iter().zip(&gap).map(|(face, gap)| (face.0, face.1 + gap.1)).collect();
-    Figure {
-        title,
-        x: Axis::linear(interface.label()),
-        y: Axis::linear("z, m"),
-        curves: vec![
-            Curve { label: "indenter".into(), points: indenter, colour: REFERENCE, stroke: Stroke::Solid },
-            Curve { label: "face of the layer".into(), points: face, colour: PALETTE[1], stroke: Stroke::Dashed },
-        ],
-        shaded: None,
-    }
+    let indenter = surface.iter().zip(&gap).map(|(surface, gap)| (surface.0, surface.1 + gap.1)).collect();
+    let curves = vec![
+        Curve::line("indenter", indenter, REFERENCE),
+        Curve::line("face of the body", surface, PALETTE[1]).stroked(Stroke::Dashed),
+    ];
+    Figure::new(title, Axis::linear("x, m").over(window.ends.0, window.ends.1), Axis::linear("z, m"), curves)
 }

@@ -1,6 +1,7 @@
 //! Where the face sticks, slips and has no contact, in time.
 
-use super::{Interface, Run, nearest};
+use super::face::Face;
+use super::{Run, nearest};
 use crate::error::Result;
 use crate::output::reader::Field;
 use crate::plot::{Axis, Colouring, Map, Panel, Raster, Sheet};
@@ -11,33 +12,31 @@ const COLUMNS: usize = 900;
 
 /// The approach, the transition to sliding, and the whole history.
 pub fn sheet(run: &Run) -> Result<Sheet> {
-    let interface = run.interface()?;
-    let field = |name| run.results.interface(name);
-    let state = State { run, pressure: field("pressure")?, shear: field("shear")?, slip_rate: field("slip_rate")? };
+    let face = run.face()?;
+    let state = State { run, face: &face, shear: face.field("shear")?, slip_rate: face.field("slip_rate")? };
     let t0 = run.approach_time();
-    let end = interface.time[interface.time.len() - 1];
+    let end = face.time[face.time.len() - 1];
     let mut panels = Vec::new();
     if t0 > 0.0 {
-        panels.push(map(&interface, &state, (0.0, t0.min(end)), "(a) approach", "time t, s"));
+        panels.push(map(&state, (0.0, t0.min(end)), 0.0, ("Approach", "time t, s")));
     }
     if let Some(row) = run.history.sliding_start() {
         let all_slips = run.history.time[row];
         let until = (t0 + 1.6 * (all_slips - t0)).min(end);
         // With fewer profiles than this there is no transition to see.
-        if interface.between(t0, until).len() > 4 {
-            panels.push(map(&interface, &state, (t0, until), "(b) from stick to slip", "time since sliding began, s"));
+        if face.between(t0, until).len() > 4 {
+            panels.push(map(&state, (t0, until), t0, ("From stick to slip", "t − t_{0}, s")));
         }
     }
     if end > t0 {
-        let letter = ["(a)", "(b)", "(c)"][panels.len()];
-        panels.push(map(&interface, &state, (0.0, end), &format!("{letter} whole history"), "time t, s"));
+        panels.push(map(&state, (0.0, end), 0.0, ("Whole history", "time t, s")));
     }
-    Ok(Sheet { panels, columns: 1, size: (900, 440) })
+    Ok(Sheet { panels, columns: 1, size: (720, 360), note: String::new() })
 }
 
 struct State<'a> {
     run: &'a Run,
-    pressure: Field,
+    face: &'a Face<'a>,
     shear: Field,
     slip_rate: Field,
 }
@@ -46,7 +45,7 @@ impl State<'_> {
     /// 0 no contact, 1 sticks, 2 slips: as `stick_fraction` counts them.
     fn class(&self, frame: usize, node: usize) -> f64 {
         let [pressure, shear, rate] =
-            [&self.pressure, &self.shear, &self.slip_rate].map(|field| field.row(frame)[node]);
+            [self.face.pressure(), &self.shear, &self.slip_rate].map(|field| field.row(frame)[node]);
         let sticks = match &self.run.scene.friction {
             _ if pressure <= 0.0 => return 0.0,
             Some(Friction::CoulombTanh { regularisation, .. }) => rate.abs() < *regularisation,
@@ -60,13 +59,12 @@ impl State<'_> {
     }
 }
 
-fn map(interface: &Interface, state: &State<'_>, (from, to): (f64, f64), title: &str, label: &str) -> Panel {
+/// The state from one time to another, counted from `origin`; what is shown and the label of the times.
+fn map(state: &State<'_>, (from, to): (f64, f64), origin: f64, (title, label): (&str, &str)) -> Panel {
+    let face = state.face;
     // The nodes in the order of their places; the fields of a map are as wide as the cells of a uniform face.
-    let mut nodes: Vec<usize> = (0..interface.x.len()).collect();
-    let place = |node: &usize| interface.place(interface.x[*node]);
-    nodes.sort_by(|a, b| place(a).total_cmp(&place(b)));
-    let (low, high) = (place(&nodes[0]), place(&nodes[nodes.len() - 1]));
-    let places: Vec<f64> = nodes.iter().map(place).collect();
+    let (places, nodes): (Vec<f64>, Vec<usize>) = face.nodes(&face.whole()).into_iter().unzip();
+    let (low, high) = (places[0], places[places.len() - 1]);
     let rows = nodes.len().clamp(2, 512);
     let half = 0.5 * (high - low) / (nodes.len() - 1).max(1) as f64;
     let ends = (low - half, high + half);
@@ -77,11 +75,10 @@ fn map(interface: &Interface, state: &State<'_>, (from, to): (f64, f64), title: 
         .map(|j| {
             // A step's profile stands for the time since the one before.
             let time = from + (to - from) * (j as f64 + 0.5) / COLUMNS as f64;
-            interface.time.partition_point(|t| *t < time).min(interface.time.len() - 1)
+            face.time.partition_point(|t| *t < time).min(face.time.len() - 1)
         })
         .collect();
     let values = picked.iter().flat_map(|&node| frames.iter().map(move |&frame| state.class(frame, node))).collect();
-    let origin = if label.contains("since") { from } else { 0.0 };
     let time = (from - origin, to - origin);
     Panel::Map(Map {
         title: title.into(),
@@ -93,7 +90,6 @@ fn map(interface: &Interface, state: &State<'_>, (from, to): (f64, f64), title: 
             ("stick".into(), (0, 114, 178)),
             ("slip".into(), (230, 159, 0)),
         ]),
-        curves: Vec::new(),
         equal: false,
     })
 }

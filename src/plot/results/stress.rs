@@ -1,66 +1,64 @@
 //! Stress in the bulk: what Figure 5 of the paper shows.
 
-use super::{Run, nearest, short};
-use crate::error::Result;
+use super::{Run, Unit, short};
+use crate::error::{Error, Result};
+use crate::output::reader::Field;
 use crate::plot::{Axis, Colouring, Map, Panel, Ramp, Raster, Sheet};
-use crate::scene::Material;
 
 /// Fields of a map along its longer side.
-const FINE: usize = 360;
+const FINE: usize = 480;
 /// Bands of colour between the least and the largest stress.
-const BANDS: usize = 14;
+const BANDS: usize = 16;
+/// A part of the body that is flatter than this has a row of its own.
+const FLAT: f64 = 0.35;
 
 /// A component of `/bulk/stress`: its index, its symbol, its colours.
-const COMPONENTS: [(usize, &str, Ramp); 2] = [(1, "σ_zz", Ramp::Sequential), (3, "τ_xz", Ramp::Diverging)];
+const COMPONENTS: [(usize, &str, Ramp); 2] = [(1, "σ_{zz}", Ramp::Sequential), (3, "τ_{xz}", Ramp::Diverging)];
 
-/// Normal stress on the left and shear stress on the right: at the end of the approach, then while sliding.
+/// Normal stress and shear stress, side by side where there is room: at the end of the approach, then while sliding.
 pub fn sheet(run: &Run) -> Result<Sheet> {
-    let time = run.results.bulk("time")?.values;
-    let stress = run.results.bulk("stress")?;
-    let grid = Grid::new(run)?;
-    let frames = frames(run, &time);
-    let modulus = young(run);
-    let letters: Vec<char> = ('a'..='z').collect();
-    let mut panels = Vec::new();
-    let rasters: Vec<Vec<Vec<f64>>> = COMPONENTS
-        .iter()
-        .map(|(component, ..)| {
-            let values = |frame: &usize| {
-                let nodes: Vec<f64> =
-                    stress.row(*frame).iter().skip(*component).step_by(4).map(|s| s / modulus).collect();
-                grid.raster(&nodes)
-            };
-            frames.iter().map(values).collect()
-        })
-        .collect();
-    for (i, &frame) in frames.iter().enumerate() {
-        let row = nearest(&run.history.time, time[frame]);
-        let when = match run.history.sliding[row] {
-            0.0 => format!("t = {} s", short(time[frame], 4)),
-            sliding => format!("t = {} s, s = {} m", short(time[frame], 4), short(sliding, 3)),
+    let bulk = Bulk::of(run)?;
+    let frames = frames(run, &bulk.time);
+    let unit = Unit::of(run);
+    let grids: Vec<Grid> = bulk.windows(&frames, run).into_iter().map(|window| Grid::new(&bulk, window)).collect();
+    let ratio = grids.iter().map(Grid::ratio).fold(0.0, f64::max);
+    let maps = COMPONENTS.map(|(component, symbol, ramp)| {
+        let raster = |(frame, grid): (&usize, &Grid)| {
+            let stress = bulk.component(*frame, component).map(|stress| stress / unit.value);
+            grid.raster(&bulk, &stress.collect::<Vec<_>>())
         };
-        for (j, (_, symbol, ramp)) in COMPONENTS.iter().enumerate() {
-            // The same levels at all times, so that they can be compared.
-            let all = rasters[j].iter().flatten().filter(|value| !value.is_nan());
-            let ends = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
+        let rasters: Vec<Vec<f64>> = frames.iter().zip(&grids).map(raster).collect();
+        // The same levels at all times, so that they can be compared.
+        let all = rasters.iter().flatten().filter(|value| !value.is_nan());
+        let ends = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
+        (symbol, rasters, Colouring::bands(unit.over(symbol), ends, ramp, BANDS))
+    });
+    let mut panels = Vec::new();
+    for (i, (&frame, grid)) in frames.iter().zip(&grids).enumerate() {
+        for (symbol, rasters, colouring) in &maps {
             panels.push(Panel::Map(Map {
-                title: format!("({}) {symbol}, {when}", letters[(2 * i + j) % 26]),
-                x: Axis::linear(if grid.shift > 0.0 { "x, m (shifted by half a period)" } else { "x, m" }),
+                title: format!("{symbol} at {}", moment(run, bulk.time[frame])),
+                x: Axis::linear("x, m"),
                 y: Axis::linear("z, m"),
-                raster: Raster { x: grid.x, y: grid.z, columns: grid.columns, values: rasters[j][i].clone() },
-                colouring: Colouring::bands(format!("{symbol} / E(0)"), ends, *ramp, BANDS),
-                curves: Vec::new(),
+                raster: Raster { x: grid.x, y: grid.z, columns: grid.columns, values: rasters[i].clone() },
+                colouring: colouring.clone(),
                 equal: true,
             }));
         }
     }
-    Ok(Sheet { panels, columns: 2, size: panel_size(&grid) })
+    let (columns, width) = if ratio < FLAT { (1, 1080) } else { (2, 540) };
+    // What the frame of such a width takes, and what is around it.
+    let height = f64::from(width - 190) * ratio.min(1.4) + 106.0;
+    Ok(Sheet { panels, columns, size: (width, height as u32), note: unit.note(run) })
 }
 
-/// E(0) = 2 G(0) (1 + nu), Pa: the instantaneous Young's modulus, of several materials the largest.
-fn young(run: &Run) -> f64 {
-    let of = |material: &Material| 2.0 * material.shear_modulus * (1.0 + material.poisson_ratio);
-    run.scene.materials.iter().map(of).fold(0.0, f64::max)
+/// t = 10 s, or s/λ = 0.5 while sliding.
+fn moment(run: &Run, time: f64) -> String {
+    match (run.slid(time), run.period()) {
+        (0.0, _) => format!("t = {} s", short(time, 4)),
+        (slid, Some(period)) => format!("s = {} λ", short(slid / period, 3)),
+        (slid, None) => format!("s = {} m", short(slid, 3)),
+    }
 }
 
 /// The frame at the end of the approach and the last one of sliding, as far as they were written.
@@ -71,11 +69,73 @@ fn frames(run: &Run, time: &[f64]) -> Vec<usize> {
     before.into_iter().chain(after).collect()
 }
 
-/// As wide as two panels may be, and no higher than the layer needs.
-fn panel_size(grid: &Grid) -> (u32, u32) {
-    let (wide, high) = (grid.x.1 - grid.x.0, grid.z.1 - grid.z.0);
-    let plot = 480.0 * (high / wide).clamp(0.3, 1.5);
-    (720, (plot + 130.0) as u32)
+/// The mesh and the stress in it.
+struct Bulk {
+    time: Vec<f64>,
+    nodes: Vec<[f64; 2]>,
+    cells: Vec<[usize; 4]>,
+    stress: Field,
+    /// After which the body is itself again along x, m; none = it does not.
+    period: Option<f64>,
+}
+
+impl Bulk {
+    fn of(run: &Run) -> Result<Self> {
+        let field = |name: &str| run.results.bulk(name);
+        let read = |name: &str, columns: usize| {
+            let found = field(name)?;
+            let rows = found.rows;
+            run.checked(&format!("bulk/{name}"), found, (rows, columns))
+        };
+        let (time, coordinates, cells) = (read("time", 1)?, read("coordinates", 2)?, read("cells", 4)?);
+        let count = coordinates.rows;
+        let stress = run.checked("bulk/stress", field("stress")?, (time.rows, 4 * count))?;
+        let known = |node: &&f64| **node >= 0.0 && **node < count as f64 && node.fract() == 0.0;
+        if let Some(node) = cells.values.iter().find(|node| !known(node)) {
+            let reason = format!("is damaged: /bulk/cells names node {node} of {count}");
+            return Err(Error::file(&run.path, reason));
+        }
+        Ok(Self {
+            time: time.values,
+            nodes: coordinates.values.chunks_exact(2).map(|node| [node[0], node[1]]).collect(),
+            cells: cells.values.chunks_exact(4).map(|c| [0, 1, 2, 3].map(|i| c[i] as usize)).collect(),
+            stress,
+            period: run.scene.period(),
+        })
+    }
+
+    /// A component of the stress at each node, Pa.
+    fn component(&self, frame: usize, component: usize) -> impl Iterator<Item = f64> {
+        self.stress.row(frame).iter().skip(component).step_by(4).copied()
+    }
+
+    /// The least and the largest coordinate.
+    fn ends(&self, i: usize) -> (f64, f64) {
+        let of = |(low, high): (f64, f64), node: &[f64; 2]| (low.min(node[i]), high.max(node[i]));
+        self.nodes.iter().fold((f64::INFINITY, f64::NEG_INFINITY), of)
+    }
+
+    /// What is shown along x of each frame: a period about the middle of the way of the contact; of another body the part
+    /// that is pressed, and its depth on either side.
+    fn windows(&self, frames: &[usize], run: &Run) -> Vec<(f64, f64)> {
+        if let Some(period) = self.period {
+            let slid = frames.iter().map(|&frame| run.slid(self.time[frame]));
+            let (low, high) = slid.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (a.min(s), b.max(s)));
+            // Quarters of a period, so that the ticks of the axis stay where they are expected.
+            let middle = (2.0 * (low + high) / period).round() * 0.25 * period;
+            return vec![(middle - 0.5 * period, middle + 0.5 * period); frames.len()];
+        }
+        let (x, z) = (self.ends(0), self.ends(1));
+        let window = |&frame: &usize| {
+            let least = 0.1 * self.component(frame, 1).fold(0.0f64, f64::min);
+            let pressed = self.nodes.iter().zip(self.component(frame, 1)).filter(|(_, s)| *s < least);
+            let ends = |(low, high): (f64, f64), x: f64| (low.min(x), high.max(x));
+            let (low, high) = pressed.map(|(node, _)| node[0]).fold((f64::INFINITY, f64::NEG_INFINITY), ends);
+            let depth = z.1 - z.0;
+            if low <= high { ((low - depth).max(x.0), (high + depth).min(x.1)) } else { x }
+        };
+        frames.iter().map(window).collect()
+    }
 }
 
 /// The regular grid that the nodal values are taken to.
@@ -84,53 +144,43 @@ struct Grid {
     z: (f64, f64),
     columns: usize,
     rows: usize,
-    shift: f64,
-    nodes: Vec<[f64; 2]>,
-    cells: Vec<[usize; 4]>,
-    period: f64,
 }
 
 impl Grid {
-    fn new(run: &Run) -> Result<Self> {
-        let coordinates = run.results.bulk("coordinates")?;
-        let cells = run.results.bulk("cells")?;
-        let nodes: Vec<[f64; 2]> = coordinates.values.chunks_exact(2).map(|node| [node[0], node[1]]).collect();
-        let cells = cells.values.chunks_exact(4).map(|c| [0, 1, 2, 3].map(|i| c[i] as usize)).collect();
-        let ends = |i: usize| {
-            let of = |(low, high): (f64, f64), node: &[f64; 2]| (low.min(node[i]), high.max(node[i]));
-            nodes.iter().fold((f64::INFINITY, f64::NEG_INFINITY), of)
-        };
-        let (x, z) = (ends(0), ends(1));
-        let shift = run.shift();
+    fn new(bulk: &Bulk, x: (f64, f64)) -> Self {
+        let z = bulk.ends(1);
         let (wide, high) = (x.1 - x.0, z.1 - z.0);
-        let fields = |length: f64| ((FINE as f64 * length / wide.max(high)).round() as usize).max(2);
-        Ok(Self {
-            x: (x.0 - shift, x.1 - shift),
-            z,
-            columns: fields(wide),
-            rows: fields(high),
-            shift,
-            nodes,
-            cells,
-            period: wide,
-        })
+        let fields = |length: f64| ((FINE as f64 * length / wide.max(high)).round() as usize).clamp(2, FINE);
+        Self { x, z, columns: fields(wide), rows: fields(high) }
     }
 
-    /// Linear over the two halves of each cell; cells left of the grid are also taken a period to the right, and
-    /// those right of it to the left.
-    fn raster(&self, values: &[f64]) -> Vec<f64> {
+    /// Height over width.
+    fn ratio(&self) -> f64 {
+        (self.z.1 - self.z.0) / (self.x.1 - self.x.0)
+    }
+
+    /// Linear over the two halves of each cell, and of its images in a body that repeats itself.
+    fn raster(&self, bulk: &Bulk, values: &[f64]) -> Vec<f64> {
         let mut raster = vec![f64::NAN; self.columns * self.rows];
-        let offsets: &[f64] = if self.shift > 0.0 { &[0.0, -self.period] } else { &[0.0] };
-        for cell in &self.cells {
+        for cell in &bulk.cells {
             for half in [[0, 1, 2], [0, 2, 3]] {
                 let corners = half.map(|i| cell[i]);
-                for offset in offsets {
-                    let at = corners.map(|node| [self.nodes[node][0] + offset, self.nodes[node][1]]);
-                    self.fill(&mut raster, at, corners.map(|node| values[node]));
+                let at = corners.map(|node| bulk.nodes[node]);
+                for offset in self.offsets(bulk.period, at[0][0]) {
+                    let image = at.map(|[x, z]| [x + offset, z]);
+                    self.fill(&mut raster, image, corners.map(|node| values[node]));
                 }
             }
         }
         raster
+    }
+
+    /// By how much what is at x is shifted to be seen.
+    fn offsets(&self, period: Option<f64>, x: f64) -> Vec<f64> {
+        let Some(period) = period else { return vec![0.0] };
+        // The image inside, and that beyond either end, which may reach in.
+        let inside = ((self.x.0 - x) / period).ceil();
+        [-1.0, 0.0, 1.0].map(|image| (inside + image) * period).to_vec()
     }
 
     /// The fields whose middle lies in a triangle.

@@ -1,30 +1,37 @@
-//! Figures of a sweep over velocities and materials, from its directory of result files.
+//! Figures of a sweep, from its directory of result files: one of the varied keys along the axis, the others in panels
+//! and colours.
 
 mod figure7;
 mod friction;
+mod models;
 mod onset;
+mod table;
 
 use std::path::{Path, PathBuf};
 
+use self::models::Abscissa;
+use self::table::Table;
 use super::material::Solid;
 use super::results::{History, Run, short};
-use super::{Colour, Curve, PALETTE, REFERENCE, Ramp, Sheet, Stroke};
+use super::{Axis, Colour, Curve, Key, REFERENCE, Ramp, Sheet, Stroke};
 use crate::error::{Error, Result};
-use crate::scene::{Material, Motion};
+use crate::scene::Material;
 
-/// Of the last phase, what counts as steady.
-const STEADY: f64 = 0.1;
-
-/// How the elastic bounds are drawn and called: with the instantaneous modulus, with the long-term one.
-const BOUNDS: [(Stroke, &str); 2] = [(Stroke::Dashed, "elastic, G(0)"), (Stroke::Dotted, "elastic, G(∞)")];
+/// Of the last phase, what counts as its end.
+const END: f64 = 0.1;
+/// What varies by less than this over the end is called steady.
+const STEADY: f64 = 0.01;
 
 /// One case of the sweep.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Case {
     /// Of the regions or strata of the body.
     materials: Vec<Material>,
     /// Of the indenter in the last phase, m/s.
     velocity: f64,
+    /// Where it stands along the axis, and what its value is called.
+    at: f64,
+    name: String,
     /// When the indenter starts to move, s.
     t0: f64,
     history: History,
@@ -32,28 +39,29 @@ struct Case {
     energy: Option<Energy>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Energy {
     external: Vec<f64>,
     viscoelastic: Vec<f64>,
     stored: Vec<f64>,
 }
 
-/// The cases with one material, by velocity, and what bounds them.
+/// The cases that differ only in the key along the axis, in its order, and what bounds them.
 #[derive(Debug)]
 struct Model {
     label: String,
     colour: Colour,
     cases: Vec<Case>,
-    /// The elastic case with the instantaneous modulus.
-    instantaneous: Option<Case>,
-    /// The elastic case with the long-term modulus.
-    long_term: Option<Case>,
+    /// The elastic cases with the instantaneous moduli, in the same order; empty = the sweep has none.
+    instantaneous: Vec<Case>,
+    /// The elastic cases with the long-term moduli.
+    long_term: Vec<Case>,
 }
 
-/// A sweep of the velocity.
+/// A sweep of sliding indenters.
 #[derive(Debug)]
 pub struct Sweep {
+    abscissa: Abscissa,
     models: Vec<Model>,
 }
 
@@ -69,19 +77,34 @@ pub struct Kind {
 
 /// All figures of a sweep.
 pub const FIGURES: [Kind; 4] = [
-    Kind { name: "figure7", shows: "tangential force against time and velocity (Figure 7)", sheet: figure7::sheet },
+    Kind {
+        name: "figure7",
+        shows: "tangential force against time, and at the end against the varied key (Figure 7)",
+        sheet: figure7::sheet,
+    },
     Kind { name: "onset", shows: "tangential force from stick to slip", sheet: onset::sheet },
     Kind {
         name: "friction",
-        shows: "normal force, hysteretic force, total friction and energy against velocity",
+        shows: "normal force, hysteretic force, total friction and energy against the varied key",
         sheet: friction::sheet,
     },
     Kind { name: "material", shows: "the materials of the sweep (Figure 3)", sheet: materials },
 ];
 
 fn materials(sweep: &Sweep) -> Sheet {
-    let solid = |model: &Model| model.cases.first().map(|case| Solid::of(case.material(), &model.label));
-    super::material::sheet(&sweep.models.iter().filter_map(solid).collect::<Vec<_>>(), None)
+    let mut solids: Vec<Solid> = Vec::new();
+    for model in &sweep.models {
+        for case in &model.cases {
+            let several = sweep.models.len() > 1 || model.cases.iter().all(|other| other.materials == case.materials);
+            let label =
+                if several { model.label.clone() } else { format!("{} = {}", sweep.abscissa.label(), case.name) };
+            let solid = Solid::of(case.material(), &label);
+            if !solids.iter().any(|known| known.is_like(&solid)) {
+                solids.push(solid);
+            }
+        }
+    }
+    super::material::sheet(&solids, None)
 }
 
 impl Sweep {
@@ -89,34 +112,107 @@ impl Sweep {
     pub fn open(directory: &Path) -> Result<(Self, Vec<PathBuf>)> {
         let mut unfinished = Vec::new();
         let mut cases = Vec::new();
-        for file in files(directory)? {
+        for (number, file) in files(directory)? {
             let run = Run::open(&file)?;
             if run.is_complete() {
-                cases.push(Case::of(run));
+                cases.extend(Case::of(run).map(|case| (number, case)));
             } else {
                 unfinished.push(file);
             }
         }
-        let cases: Vec<Case> = cases.into_iter().flatten().collect();
         if cases.is_empty() {
             return Err(Error::file(
                 directory,
                 "has no finished case (case-*.h5) in which the indenter slides at a velocity",
             ));
         }
-        Ok((Self { models: models(cases) }, unfinished))
+        let known = Table::read(directory)?;
+        let table = known.clone().unwrap_or_else(|| models::guessed(&cases));
+        let (abscissa, models) = models::models(&table, cases);
+        let twice = |model: &Model| model.cases.windows(2).any(|pair| pair[0].at == pair[1].at);
+        if models.iter().any(twice) {
+            let reason = match known {
+                None => "has no summary.csv, which says what was varied; end the sweep, and it is written",
+                Some(_) => {
+                    "has a summary.csv that does not tell its cases apart; run the sweep again, and it is written anew"
+                }
+            };
+            return Err(Error::file(directory, reason));
+        }
+        Ok((Self { abscissa, models }, unfinished))
+    }
+
+    /// A quantity of the end against the varied key, for each model that has it: a line, with a ring at each case.
+    fn against(&self, quantity: impl Fn(&Case) -> Option<f64>) -> Vec<Curve> {
+        let curves = self.models.iter().flat_map(|model| {
+            let points = model.cases.iter().filter_map(|case| Some((case.at, quantity(case)?))).collect();
+            let line = Curve::line(model.label.clone(), points, model.colour);
+            let rings = Curve { label: String::new(), ..line.clone() }.stroked(Stroke::Points);
+            [line, rings]
+        });
+        curves.filter(|curve| !curve.points.is_empty()).collect()
+    }
+
+    /// The same of the elastic bounds, in the colours of the models: levels where the key is the velocity, on which
+    /// elastic forces hardly depend.
+    fn bounds(&self, quantity: impl Fn(&Case) -> f64) -> Vec<Curve> {
+        let mut curves: Vec<Curve> = Vec::new();
+        for model in &self.models {
+            for (cases, stroke, _) in model.bounds() {
+                let points: Vec<_> = match (self.abscissa.is_velocity(), cases.get(cases.len() / 2)) {
+                    (true, Some(middle)) => model.ends().map(|at| (at, quantity(middle))).to_vec(),
+                    _ => cases.iter().map(|case| (case.at, quantity(case))).collect(),
+                };
+                curves.extend((!points.is_empty()).then(|| Curve::line("", points, model.colour).stroked(stroke)));
+            }
+        }
+        for (stroke, label) in BOUNDS {
+            if curves.iter().any(|curve| curve.stroke == stroke) {
+                curves.push(Curve::line(label, Vec::new(), (90, 90, 90)).stroked(stroke));
+            }
+        }
+        curves
+    }
+
+    /// By how much of its mean a column of the history varies over the end, at most.
+    fn unsteadiness(&self, column: fn(&History) -> &Vec<f64>) -> f64 {
+        let of = |case: &Case| {
+            let values = &column(&case.history)[case.end()];
+            let (low, high) =
+                values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
+            (high - low) / case.mean(column).abs()
+        };
+        self.models.iter().flat_map(|model| &model.cases).map(of).filter(|v| v.is_finite()).fold(0.0, f64::max)
+    }
+
+    /// What a force at the end is called: steady only if it is.
+    fn named(&self, symbol: &str, column: fn(&History) -> &Vec<f64>) -> String {
+        if self.unsteadiness(column) < STEADY { format!("steady {symbol}") } else { format!("{symbol} at the end") }
+    }
+
+    /// What the forces at the end are, and how steady.
+    fn note(&self) -> String {
+        let percent = |column| format!("{} %", short(100.0 * self.unsteadiness(column), 2));
+        let (normal, tangential) = (percent(|history| &history.normal), percent(|history| &history.tangential));
+        format!(
+            "Means over the last tenth of the sliding, in which N varies by up to {normal} and Q by up to {tangential}."
+        )
     }
 }
 
-/// The result files of a sweep, in order.
-fn files(directory: &Path) -> Result<Vec<PathBuf>> {
+/// How the elastic bounds are drawn and called: with the instantaneous modulus, with the long-term one.
+const BOUNDS: [(Stroke, &str); 2] = [(Stroke::Dashed, "elastic, G(0)"), (Stroke::Dotted, "elastic, G(∞)")];
+
+/// The numbers of the cases and their files, in order.
+fn files(directory: &Path) -> Result<Vec<(usize, PathBuf)>> {
     let failed = |error: std::io::Error| Error::file(directory, error);
     let mut files = Vec::new();
     for entry in std::fs::read_dir(directory).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        if name.starts_with("case-") && name.ends_with(".h5") {
-            files.push(path);
+        let number = name.strip_prefix("case-").and_then(|rest| rest.strip_suffix(".h5"));
+        if let Some(number) = number.and_then(|number| number.parse().ok()) {
+            files.push((number, path));
         }
     }
     files.sort();
@@ -125,26 +221,35 @@ fn files(directory: &Path) -> Result<Vec<PathBuf>> {
 
 impl Model {
     /// The elastic bounds, where the sweep has them.
-    fn bounds(&self) -> [(&Option<Case>, Stroke, &'static str); 2] {
+    fn bounds(&self) -> [(&[Case], Stroke, &'static str); 2] {
         let [instantaneous, long_term] = BOUNDS;
         [(&self.instantaneous, instantaneous.0, instantaneous.1), (&self.long_term, long_term.0, long_term.1)]
     }
 
-    /// All cases, the bounds included.
-    fn all(&self) -> impl Iterator<Item = &Case> {
-        self.cases.iter().chain(&self.instantaneous).chain(&self.long_term)
+    /// The first and the last place along the axis.
+    fn ends(&self) -> [f64; 2] {
+        [self.cases[0].at, self.cases[self.cases.len() - 1].at]
     }
 
-    /// A curve for each velocity and each bound.
-    fn curves(&self, points: impl Fn(&Case) -> Vec<(f64, f64)>) -> Vec<Curve> {
-        let curve = |case: &Case, label: String, colour, stroke| Curve { label, points: points(case), colour, stroke };
-        let velocities = self.cases.iter().zip(Ramp::lines(self.cases.len()));
+    /// A curve for each case in the order of the key along the axis, and one for each bound that holds for all of them.
+    fn curves(&self, abscissa: &Abscissa, points: impl Fn(&Case) -> Vec<(f64, f64)>) -> Vec<Curve> {
+        let colours = Ramp::lines(self.cases.len());
         let mut curves: Vec<Curve> =
-            velocities.map(|(case, colour)| curve(case, short(case.velocity, 4), colour, Stroke::Solid)).collect();
-        for (bound, stroke, label) in self.bounds() {
-            curves.extend(bound.iter().map(|case| curve(case, label.into(), REFERENCE, stroke)));
+            self.cases.iter().zip(colours).map(|(case, colour)| Curve::line("", points(case), colour)).collect();
+        // Elastic forces hardly depend on the velocity: one case of many is enough.
+        if abscissa.is_velocity() {
+            for (cases, stroke, label) in self.bounds() {
+                let middle = cases.get(cases.len() / 2);
+                curves.extend(middle.map(|case| Curve::line(label, points(case), REFERENCE).stroked(stroke)));
+            }
         }
         curves
+    }
+
+    /// What the colours of [`Self::curves`] stand for.
+    fn key(&self, abscissa: &Abscissa) -> Option<Key> {
+        let names = self.cases.iter().map(|case| case.name.clone());
+        Some(Key { label: abscissa.label(), entries: names.zip(Ramp::lines(self.cases.len())).collect() })
     }
 }
 
@@ -161,13 +266,9 @@ impl Energy {
 impl Case {
     /// None where the indenter does not end at a velocity.
     fn of(run: Run) -> Option<Self> {
-        let velocity = match run.scene.phases.last()?.motion {
-            Motion::Velocity(velocity) if velocity != 0.0 => velocity.abs(),
-            _ => return None,
-        };
-        let energy = Energy::of(&run);
-        let t0 = run.approach_time();
-        Some(Self { materials: run.scene.materials, velocity, t0, history: run.history, energy })
+        let (velocity, t0, energy) = (run.velocity()?, run.approach_time(), Energy::of(&run));
+        let Run { scene, history, .. } = run;
+        Some(Self { materials: scene.materials, velocity, at: velocity, name: String::new(), t0, history, energy })
     }
 
     /// The material that stands for the body: the first that relaxes, if any does.
@@ -175,101 +276,36 @@ impl Case {
         self.materials.iter().find(|material| !material.is_elastic()).unwrap_or(&self.materials[0])
     }
 
-    /// The rows that count as steady.
-    fn steady_rows(&self) -> std::ops::Range<usize> {
+    /// The rows of the end.
+    fn end(&self) -> std::ops::Range<usize> {
         let time = &self.history.time;
         let end = time[time.len() - 1];
         let phase = self.history.phase[time.len() - 1];
         let start = self.history.phase.iter().position(|p| *p == phase).unwrap_or(0);
-        let from = end - STEADY * (end - time[start]);
+        let from = end - END * (end - time[start]);
         time.partition_point(|t| *t < from).min(time.len() - 1)..time.len()
     }
 
-    /// The mean of a column of the history over the steady rows.
-    fn steady(&self, column: impl Fn(&History) -> &Vec<f64>) -> f64 {
-        let rows = self.steady_rows();
+    /// The mean of a column of the history over the end.
+    fn mean(&self, column: impl Fn(&History) -> &Vec<f64>) -> f64 {
+        let rows = self.end();
         let count = rows.len() as f64;
         column(&self.history)[rows].iter().sum::<f64>() / count
     }
 }
 
-/// The viscoelastic materials in the order they come, each with its cases and bounds; elastic materials alone are
-/// models of their own.
-fn models(cases: Vec<Case>) -> Vec<Model> {
-    let (elastic, viscoelastic): (Vec<Case>, Vec<Case>) =
-        cases.into_iter().partition(|case| case.material().is_elastic());
-    let mut models: Vec<Model> = Vec::new();
-    let (mut elastic, own) = if viscoelastic.is_empty() { (Vec::new(), elastic) } else { (elastic, viscoelastic) };
-    for case in own {
-        match models.iter_mut().find(|model| model.cases.iter().any(|other| other.materials == case.materials)) {
-            Some(model) => model.cases.push(case),
-            None => {
-                let label = Solid::of(case.material(), "").label().to_owned();
-                let colour = PALETTE[models.len() % PALETTE.len()];
-                models.push(Model { label, colour, cases: vec![case], instantaneous: None, long_term: None });
-            }
-        }
+/// An axis around `near`, with what lies far beyond it behind a break.
+fn broken(label: String, near: impl Iterator<Item = f64>, far: impl Iterator<Item = f64>) -> Axis {
+    let wider = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
+    let nothing = (f64::INFINITY, f64::NEG_INFINITY);
+    let (near, far) = (near.fold(nothing, wider), far.fold(nothing, wider));
+    let span = near.1 - near.0;
+    let is_far = far.0.is_finite() && far.0 > near.1 + 0.05 * span && far.1 > near.1 + 0.3 * span;
+    let (low, high) = if is_far { near } else { (near.0.min(far.0), near.1.max(far.1)) };
+    let axis = Axis::linear(label);
+    if !(high > low && (high - low).is_finite()) {
+        return axis;
     }
-    for model in &mut models {
-        model.cases.sort_by(|a, b| a.velocity.total_cmp(&b.velocity));
-        let first = &model.cases[0];
-        let material = first.material();
-        let relaxed = 1.0 - material.arms.iter().map(|arm| arm.weight).sum::<f64>();
-        let (modulus, nu) = (material.shear_modulus, material.poisson_ratio);
-        // Elastic forces hardly depend on the velocity: one case of many is enough.
-        let mut bound = |modulus: f64| {
-            let close = |case: &Case| {
-                let other = case.material();
-                first.materials.len() == case.materials.len()
-                    && (other.shear_modulus / modulus - 1.0).abs() < 1e-3
-                    && (other.poisson_ratio - nu).abs() < 1e-9
-            };
-            let found: Vec<usize> = (0..elastic.len()).filter(|&i| close(&elastic[i])).collect();
-            found.get(found.len() / 2).map(|&i| elastic.swap_remove(i))
-        };
-        model.instantaneous = bound(modulus);
-        model.long_term = bound(modulus * relaxed);
-    }
-    // Models with the same number of arms are told apart by their modulus.
-    let labels: Vec<String> = models.iter().map(|model| model.label.clone()).collect();
-    for model in &mut models {
-        if labels.iter().filter(|label| **label == model.label).count() > 1 {
-            model.label = format!("{}, G(0) = {:.4} Pa", model.label, model.cases[0].material().shear_modulus);
-        }
-    }
-    models
-}
-
-/// `quantity` of the steady state against velocity, for each model that has it: a line, with a ring at each case.
-fn against_velocity(sweep: &Sweep, quantity: impl Fn(&Case) -> Option<f64>) -> Vec<Curve> {
-    let curves = sweep.models.iter().flat_map(|model| {
-        let points: Vec<(f64, f64)> =
-            model.cases.iter().filter_map(|case| Some((case.velocity, quantity(case)?))).collect();
-        let line = Curve { label: model.label.clone(), points, colour: model.colour, stroke: Stroke::Solid };
-        let rings = Curve { label: String::new(), stroke: Stroke::Points, ..line.clone() };
-        [line, rings]
-    });
-    curves.filter(|curve| !curve.points.is_empty()).collect()
-}
-
-/// The same quantity of the elastic bounds, as level lines in the colours of the models: dashed instantaneous, dotted
-/// long-term.
-fn bounds(sweep: &Sweep, quantity: impl Fn(&Case) -> f64) -> Vec<Curve> {
-    let mut curves = Vec::new();
-    for model in &sweep.models {
-        let ends = (model.cases[0].velocity, model.cases[model.cases.len() - 1].velocity);
-        for (bound, stroke, _) in model.bounds() {
-            if let Some(case) = bound {
-                let level = quantity(case);
-                let points = vec![(ends.0, level), (ends.1, level)];
-                curves.push(Curve { label: String::new(), points, colour: model.colour, stroke });
-            }
-        }
-    }
-    for (stroke, label) in BOUNDS {
-        if curves.iter().any(|curve| curve.stroke == stroke) {
-            curves.push(Curve { label: label.into(), points: Vec::new(), colour: (90, 90, 90), stroke });
-        }
-    }
-    curves
+    let (air, far_air) = (0.05 * (high - low), (0.2 * (far.1 - far.0)).max(0.05 * far.1));
+    Axis { beyond: is_far.then_some((far.0 - far_air, far.1 + far_air)), ..axis.over(low - air, high + air) }
 }
