@@ -1,10 +1,12 @@
 //! The composition root: the one place that matches on what a scene asks for and builds the parts for it.
 
 mod body;
+mod estimate;
 mod inputs;
 mod profile;
 
 use std::cell::RefCell;
+use std::collections::HashSet;
 use std::path::Path;
 use std::rc::Rc;
 
@@ -29,6 +31,7 @@ use crate::solve::{
 
 use body::Materials;
 pub use body::{Outline, Stretch, outline};
+pub use estimate::{Estimate, augmentations};
 pub use inputs::inputs;
 pub use profile::{Finest, PressedEnd, Shape, elevations, shape};
 
@@ -84,7 +87,14 @@ pub fn build_reusing(
 ) -> Result<Problem> {
     // First what the scene may be refused for.
     let elevations = share_numbers(comm, || elevations(scene, file))?;
+    if scene.layer().is_some() {
+        // A layer's outline is known before its mesh, which takes memory itself.
+        estimate::fits(comm, scene, file, &outline(scene, file)?)?;
+    }
     let mesh = body::mesh(comm, scene, file)?;
+    if scene.layer().is_none() {
+        estimate::fits(comm, scene, file, &Outline::of(scene, &mesh))?;
+    }
     let profile = shape(scene, file, &elevations, Stretch::of(scene, &mesh))?.profile;
     assemble(comm, scene, (mesh, profile), compliances)
 }
@@ -302,6 +312,7 @@ pub fn phases(scene: &Scene, clearance: f64) -> Vec<Phase> {
     let at = &scene.output.bulk_at;
     let moment = |when: &When| if let When::Time(t) = when { Some(*t) } else { None };
     let mut moments: Vec<f64> = at.iter().filter_map(moment).collect();
+    let ends: HashSet<&str> = at.iter().filter_map(When::phase_end).collect();
     moments.sort_by(f64::total_cmp);
     let (mut start, mut approach, mut sliding) = (0.0, 0.0, 0.0);
     let mut list = Vec::with_capacity(scene.phases.len());
@@ -317,7 +328,7 @@ pub fn phases(scene: &Scene, clearance: f64) -> Vec<Phase> {
         };
         let mut steps = loading::targets(start, phase.duration, count, &moments);
         if let Some(last) = steps.last_mut() {
-            last.bulk_output |= at.contains(&When::PhaseEnd(phase.name.clone()));
+            last.bulk_output |= ends.contains(phase.name.as_str());
         }
         let mut phase = Phase {
             name: phase.name.clone(),

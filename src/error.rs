@@ -44,7 +44,7 @@ pub enum Error {
 impl Error {
     /// An error of the scene `file` at `key`.
     pub fn scene(file: &Path, key: impl Into<String>, reason: impl Into<String>) -> Self {
-        Self::Scene { file: file.to_owned(), key: key.into(), reason: reason.into() }
+        Self::Scene { file: file.to_owned(), key: shortened(key.into(), 200), reason: shortened(reason.into(), 1000) }
     }
 
     /// A file that cannot be read or written.
@@ -63,6 +63,16 @@ impl Error {
             Self::Mismatch(_) | Self::Internal(_) => 1,
         }
     }
+}
+
+/// A text of at most about so many characters: what a user typed may be in it, however long that is.
+fn shortened(text: String, most: usize) -> String {
+    if text.chars().nth(most).is_none() {
+        return text;
+    }
+    let letters: Vec<char> = text.chars().collect();
+    let [begin, end] = [&letters[..most / 2], &letters[letters.len() - most / 2..]].map(String::from_iter);
+    format!("{begin} ... {end}")
 }
 
 impl fmt::Display for Error {
@@ -84,3 +94,17 @@ impl fmt::Display for Error {
 }
 
 impl std::error::Error for Error {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A formula of a million characters does not fill the screen; what is wrong with it, which comes last, is there.
+    #[test]
+    fn what_was_typed_is_shortened() {
+        let error = Error::scene(Path::new("a.toml"), "x", format!("{:?}, column 7: is no name", "x+".repeat(500_000)));
+        let text = error.to_string();
+        assert!(text.len() < 1100 && text.ends_with("column 7: is no name"), "{}", text.len());
+        assert_eq!(Error::scene(Path::new("a.toml"), "x", "short").to_string(), "a.toml: x: short");
+    }
+}

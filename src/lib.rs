@@ -15,6 +15,7 @@ pub mod friction;
 pub mod input;
 pub mod interface;
 pub mod loading;
+pub mod memory;
 pub mod mesh;
 pub mod oracle;
 pub mod output;

@@ -173,7 +173,8 @@ pub fn targets(start: f64, duration: f64, steps: usize, moments: &[f64]) -> Vec<
     let nominal = duration / steps as f64;
     // Two moments this close are one.
     let near = 1e-9 * nominal;
-    let mut moments = moments.iter().copied().filter(|&t| t > start + near && t < start + duration + near).peekable();
+    let [first, end] = [start, start + duration].map(|t| moments.partition_point(|&moment| moment <= t + near));
+    let mut moments = moments[first..end].iter().copied().peekable();
     let mut list = Vec::with_capacity(steps);
     let mut last = start;
     for k in 1..=steps {

@@ -366,3 +366,63 @@ fn what_is_no_regular_file_is_refused_as_such() {
         }
     }
 }
+
+/// Processes that a launcher started together, but that MPI sees each alone, would all solve everything into one file.
+#[test]
+fn processes_that_are_each_alone_are_refused() {
+    for (name, launcher) in
+        [("SLURM_NTASKS", "Slurm has 2"), ("SLURM_STEP_NUM_TASKS", "Slurm's srun has 2"), ("PMI_SIZE", "(PMI) has 2")]
+    {
+        let run = small();
+        let outcome = Outcome::new(run.command().env(name, "2").output().unwrap(), tempfile::tempdir().unwrap());
+        assert_eq!((outcome.code, names(&run.directory())), (2, vec!["scene.toml".to_owned()]), "{outcome:?}");
+        outcome.assert_single_message(launcher);
+    }
+    // One process on purpose.
+    let run = small();
+    let mut alone = mpirun(1);
+    alone.arg(MPJR).args(run.command().get_args()).current_dir(run.directory()).env("SLURM_NTASKS", "2");
+    assert!(alone.output().unwrap().status.success());
+}
+
+/// Memory is asked for before it is taken: libraries that get none crash, or try for ever.
+#[test]
+fn too_little_memory_is_said() {
+    for (limit, cells) in [(300_000, "[8,8]"), (900_000, "[1000,1000]")] {
+        let run = Run::new(SLIDING).set(format!("layer.cells={cells}")).set("layer.sides=free");
+        let directory = run.directory();
+        let arguments: Vec<String> =
+            run.command().get_args().map(|word| format!("'{}'", word.to_string_lossy())).collect();
+        let line = format!("ulimit -v {limit}; exec {MPJR} {}", arguments.join(" "));
+        let output =
+            Command::new("timeout").args(["-s", "KILL", "60", "sh", "-c", &line]).current_dir(&directory).output();
+        let outcome = Outcome::new(output.unwrap(), tempfile::tempdir().unwrap());
+        assert_eq!(outcome.code, 2, "{limit}: {outcome:?}");
+        outcome.assert_single_message("the limit of this process (ulimit -v) leaves");
+        assert_eq!(names(&directory), ["scene.toml"]);
+    }
+}
+
+/// `check` takes time in proportion to the length of the scene: quadratic, each of these would take minutes.
+#[test]
+fn long_scenes_are_checked_in_time() {
+    let list = |count: usize, item: &dyn Fn(usize) -> String| (0..count).map(item).collect::<Vec<_>>().join(", ");
+    let arms = list(100_000, &|i| format!("{{ weight = 9e-6, time = {:e} }}", 1e-3 * 1.0001_f64.powi(i as i32)));
+    let times = list(1_000_000, &|i| format!("{:?}", 1e-5 * (i + 1) as f64));
+    let head = SLIDING.split("[[phase]]").next().unwrap();
+    let phases: String =
+        (0..100_000).map(|i| format!("[[phase]]\nname = \"p{i}\"\nduration = 1.0\nsteps = 1\n")).collect();
+    let ends = list(100_000, &|i| format!("\"p{i}\""));
+    for scene in [
+        SLIDING.replace("arms = [ { weight = 0.579, time = 0.817 } ]", &format!("arms = [{arms}]")),
+        format!("{SLIDING}\n[output]\nbulk_at = [{times}]\n"),
+        format!("{head}{phases}\n[output]\nbulk_at = [{ends}]\n"),
+    ] {
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::write(directory.path().join("scene.toml"), scene).unwrap();
+        let begun = std::time::Instant::now();
+        let output = Command::new("timeout").args(["60", MPJR, "check", "scene.toml"]).current_dir(&directory).output();
+        let output = output.unwrap();
+        assert!(output.status.success(), "{:?} {}", begun.elapsed(), String::from_utf8_lossy(&output.stderr));
+    }
+}

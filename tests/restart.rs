@@ -274,6 +274,105 @@ fn what_cannot_be_resumed_is_refused() {
     assert!(ends_with(&mut resume(&[]), 2).contains("before its first checkpoint"));
 }
 
+/// What was stopped is not begun anew without a word: both ways on are named, and both work.
+#[test]
+fn a_run_that_was_stopped_is_not_dropped() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = scene(directory.path(), 200, &ratio(), "");
+    let out = directory.path().join("run.h5");
+    let stop = |command: &mut Command| {
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        wait_for(&mut child, &out, 2);
+        assert!(Command::new("kill").arg(child.id().to_string()).status().unwrap().success());
+        assert_eq!(child.wait().unwrap().code(), Some(5));
+    };
+    stop(&mut run(&mut program(1), &scene, &out));
+    let before = std::fs::read(&out).unwrap();
+    for ranks in [1, 2] {
+        let message = ends_with(&mut run(&mut program(ranks), &scene, &out), 2);
+        assert!(message.contains("--resume") && message.contains("--restart"), "{message}");
+        assert_eq!(message.matches("mpjr: ").count(), 1, "{message}");
+        assert!(std::fs::read(&out).unwrap() == before);
+    }
+    stop(run(&mut program(1), &scene, &out).arg("--restart"));
+    output_of(run(&mut program(1), &scene, &out).arg("--resume"));
+    let whole = directory.path().join("whole.h5");
+    output_of(&mut run(&mut program(1), &scene, &whole));
+    assert_same(&whole, &out, 0.0);
+    // What is complete is replaced as ever.
+    output_of(&mut run(&mut program(1), &scene, &out));
+}
+
+/// Results that were damaged after their checkpoint was written are not gone on with: a byte changed anywhere among the
+/// rows that count, in each group.
+#[test]
+fn damaged_results_are_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = scene(directory.path(), 2000, &ratio(), "");
+    let out = directory.path().join("run.h5");
+    let mut child = run(&mut program(2), &scene, &out).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    wait_for(&mut child, &out, 12);
+    assert!(Command::new("kill").args(["-USR1", &child.id().to_string()]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(5));
+    let (whole, kept) = (std::fs::read(&out).unwrap(), std::fs::read(checkpoint::beside(&out)).unwrap());
+    let results = Results::open(&out).unwrap();
+    let numbers = [
+        results.history("normal_force").unwrap()[7],
+        results.history("energy/stored").unwrap()[9],
+        results.interface("pressure").unwrap().row(5)[3],
+        results.interface("displacement_x").unwrap().row(6)[2],
+        results.bulk("stress").unwrap().row(0)[17],
+        results.interface("x").unwrap().values[5],
+        results.bulk("coordinates").unwrap().values[31],
+    ];
+    drop(results);
+    for number in numbers {
+        let bytes = number.to_ne_bytes();
+        let at = whole.windows(8).position(|window| window == bytes).unwrap();
+        let mut damaged = whole.clone();
+        damaged[at + 3] ^= 0x10;
+        std::fs::write(&out, &damaged).unwrap();
+        let message = ends_with(run(&mut program(1), &scene, &out).arg("--resume"), 4);
+        assert!(message.contains("was changed since the checkpoint beside it was written"), "{number}: {message}");
+        assert!(std::fs::read(&out).unwrap() == damaged && std::fs::read(checkpoint::beside(&out)).unwrap() == kept);
+    }
+    std::fs::write(&out, &whole).unwrap();
+    let mut resumed = run(&mut program(1), &scene, &out).arg("--resume").stdout(Stdio::null()).spawn().unwrap();
+    wait_for(&mut resumed, &out, 1);
+    resumed.kill().unwrap();
+    resumed.wait().unwrap();
+}
+
+/// A signal that comes before the first step is kept for it.
+#[test]
+fn a_signal_while_it_starts() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = scene(directory.path(), 200_000, &ratio(), "strategy = \"monolithic\"");
+    let out = directory.path().join("run.h5");
+    let caught = |child: &Child| {
+        let about = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+        let mask = about
+            .lines()
+            .find_map(|line| line.strip_prefix("SigCgt:"))
+            .map_or(0, |mask| u64::from_str_radix(mask.trim(), 16).unwrap());
+        // SIGTERM is 15.
+        mask >> 14 & 1 == 1
+    };
+    let child = run(&mut program(1), &scene, &out).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    while !caught(&child) {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    assert!(!out.exists());
+    assert!(Command::new("kill").arg(child.id().to_string()).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(5), "{message}");
+    assert!(
+        message.starts_with("mpjr: stopped by a signal at t = 0.1") && message.ends_with("--resume\n"),
+        "{message}"
+    );
+}
+
 /// A mesh or a profile whose file has changed is another one, however like the first it is: it is refused, before the end
 /// of the run and after, and taken again once the file is what it was.
 #[test]

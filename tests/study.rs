@@ -4,9 +4,10 @@
 mod common;
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
-use common::program::{Run, ends_with, output_of, program};
+use common::program::{MPJR, Run, ends_with, output_of, program};
 use mpjr::output::HistoryRow;
 use mpjr::study::Difference;
 use toml::{Table, Value};
@@ -56,7 +57,7 @@ fn the_default_ladders() {
     assert!(!advice.is_empty());
     // A second study replaces what the first wrote; what another wrote stays.
     std::fs::write(out.join("runs.csv"), "mine").unwrap();
-    assert!(ends_with(&mut study(&scene, 1, &[]), 4).contains("was not written by mpjr study"));
+    assert!(ends_with(&mut study(&scene, 1, &[]), 4).contains("exists and was not written by mpjr"));
 }
 
 /// The penalty in series with the body has order 1 in 1/penalty: doubling it from 1e6 to 8e6 Pa/m halves what it
@@ -86,9 +87,15 @@ fn the_cheapest_setting() {
     let scene = scene(directory.path());
     let steps = ["--vary", "phase.slide.steps=8,16,32,64", "--vary", "layer.cells=[8,8],[16,16]"];
     let told = output_of(study(&scene, 1, &steps).args(["--error", "0.2"]));
-    let options: Vec<&str> = told.split_whitespace().map(|word| word.trim_matches('\'')).collect();
+    let options: Vec<&str> = told.split_whitespace().collect();
     assert!(options.len() == 4 && options[0] == "--set" && told.lines().count() == 1, "{told}");
-    output_of(program(1).arg("run").arg(&scene).args(options).arg("--out").arg(directory.path().join("advised.h5")));
+    // As README has it: what is printed goes through a shell, which takes no quotes off.
+    let vary = steps.map(|word| format!("'{word}'")).join(" ");
+    let line = format!("$MPJR run sliding.toml $($MPJR study sliding.toml {vary} --error 0.2) --out advised.h5");
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &line]).env("MPJR", MPJR).current_dir(&directory);
+    shell.envs(program(1).get_envs().filter_map(|(key, value)| Some((key, value?))));
+    assert!(output_of(&mut shell).contains("results:       advised.h5"));
     assert!(!directory.path().join("sliding-study").exists());
     let refused = ends_with(study(&scene, 1, &steps).args(["--error", "1e-9"]), 2);
     assert!(refused.contains("no setting on these ladders meets it"), "{refused}");
@@ -184,9 +191,10 @@ fn the_presets_are_as_accurate_as_told() {
         let history = solve(&[format!("solver.preset={preset}")]);
         let found = Difference::between(&history, &finest);
         let [steps, error, hysteretic] = published(preset);
-        println!("{preset}: {} steps, {:.2e}, hysteretic {:.2e}", history.len() - 1, found.error(), found.hysteretic);
+        let forces = found.normal.max(found.tangential);
+        println!("{preset}: {} steps, {forces:.2e}, hysteretic {:.2e}", history.len() - 1, found.hysteretic);
         assert!(((history.len() - 1) as f64 / steps - 1.0).abs() < 0.05, "{preset}: {} steps", history.len() - 1);
-        for (found, told) in [(found.error(), error), (found.hysteretic, hysteretic)] {
+        for (found, told) in [(forces, error), (found.hysteretic, hysteretic)] {
             assert!(found < 1.1 * told && found > 0.5 * told, "{preset}: {found:e}, told {told:e}");
         }
     }

@@ -234,8 +234,8 @@ fn a_failed_case_stops_no_other() {
     let (directory, out) = prepare("scene = \"scene.toml\"\n[vary]\n\"contact.penalty\" = [1e6, 2e6, 3e6]\n");
     std::fs::create_dir_all(&out).unwrap();
     std::fs::write(out.join("case-0001.h5"), "somebody else's").unwrap();
-    let message = ends_with(&mut sweep(program(1), &out, &[]), 3);
-    assert!(message.starts_with("mpjr: 1 of 3 case(s) failed: case 1 (exit code 4): "), "{message}");
+    let message = ends_with(&mut sweep(program(1), &out, &[]), 4);
+    assert!(message.contains(": 1 of 3 case(s) failed: case 1 (exit code 4): "), "{message}");
     assert!(message.contains("was not written by mpjr") && message.lines().count() == 1, "{message}");
     let rows = summary(&out);
     assert_eq!(
@@ -356,4 +356,42 @@ fn bad_sweeps_are_refused() {
     let (_directory, out) = prepare(&with("\"layer.width\" = \"2 *\""));
     let found = ends_with(&mut sweep(program(1), &out, &["--list"]), 2);
     assert!(found.contains("follow.layer.width: is not a formula: ") && found.lines().count() == 1, "{found}");
+}
+
+/// Results of a case that were damaged or emptied are moved aside, which is said, and the case is solved again; what was
+/// never this program's stays, and the exit code is that of its case.
+#[test]
+fn damaged_cases_are_solved_again() {
+    let (_directory, out) = prepare(SWEEP);
+    output_of(&mut sweep(program(1), &out, &[]));
+    let file = |case: usize| out.join(format!("case-{case:04}.h5"));
+    let kept: Vec<Vec<u8>> = (0..6).map(|case| std::fs::read(file(case)).unwrap()).collect();
+    let mut damaged = kept[1].clone();
+    damaged[..64].fill(0xff);
+    std::fs::write(file(1), &damaged).unwrap();
+    std::fs::write(file(2), "").unwrap();
+    std::fs::write(file(4), &kept[4][..kept[4].len() / 3]).unwrap();
+    let output = sweep(program(1), &out, &[]).output().unwrap();
+    let (told, said) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success() && told.contains("6 of 6 case(s) complete, 0 failed"), "{told}{said}");
+    for case in [1, 2, 4] {
+        assert_eq!(
+            said.matches(&format!("moved to case-{case:04}.damaged, and case {case} is solved again")).count(),
+            1
+        );
+    }
+    assert_eq!(said.lines().count(), 3, "{said}");
+    assert!(std::fs::read(out.join("case-0001.damaged")).unwrap() == damaged);
+    let original = out.join("original.h5");
+    std::fs::write(&original, &kept[1]).unwrap();
+    assert_same(&original, &file(1), 0.0);
+
+    std::fs::remove_dir_all(&out).unwrap();
+    std::fs::create_dir(&out).unwrap();
+    std::fs::write(file(3), "mine").unwrap();
+    for _ in 0..2 {
+        let message = ends_with(&mut sweep(program(1), &out, &[]), 4);
+        assert!(message.contains("1 of 6 case(s) failed: case 3 (exit code 4)"), "{message}");
+        assert_eq!(std::fs::read_to_string(file(3)).unwrap(), "mine");
+    }
 }

@@ -4,6 +4,7 @@ mod case;
 mod check;
 mod fit;
 mod interrupt;
+mod launcher;
 mod material;
 mod origin;
 mod plot;
@@ -22,8 +23,10 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use crate::error::{Error, Result};
+use crate::memory;
 use crate::petsc::Session;
 
+use launcher::{Launch, is_first_process};
 use terminal::warn;
 
 /// Transient viscoelastic contact with friction, by interface finite elements with embedded profiles (MPJR).
@@ -59,6 +62,7 @@ enum Command {
 /// 3 no convergence, 4 a file could not be read or written, 5 stopped by a signal, 1 anything else, such as a failed
 /// `verify`.
 pub fn main() -> i32 {
+    end_on_panic();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(message) => {
@@ -83,7 +87,8 @@ pub fn main() -> i32 {
         // Defects may be this process's alone; of anything else the first process tells.
         Err(error @ Error::Internal(_)) if !is_first_process() => error.exit_code(),
         Err(error) => {
-            if is_first_process() {
+            // That it was stopped has been said.
+            if is_first_process() && !matches!(error, Error::Stopped(_)) {
                 warn(&error);
             }
             exit_code(error.exit_code())
@@ -104,11 +109,34 @@ fn on_first_process(work: impl FnOnce() -> Result<()>) -> Result<()> {
 
 /// What needs one: MPI and PETSc, with these PETSc options, on all ranks of the launcher.
 fn in_session(petsc: &[String], work: impl FnOnce(&Session, &SimpleCommunicator) -> Result<()>) -> Result<()> {
+    let launch = Launch::announced();
+    memory::refuse_to_start()?;
     let session = Session::start(petsc)?;
     let world = session.world();
+    launch.refuse_if_split(world.size() as usize)?;
     let outcome = work(&session, &world);
     abort_if_alone(&world, &outcome);
+    if let (Err(error @ Error::Stopped(_)), true) = (&outcome, is_first_process()) {
+        // A launcher that was interrupted itself passes nothing on once it is done with MPI.
+        warn(error);
+    }
     outcome
+}
+
+/// From here on a panic, which is always a defect, ends all ranks, as the others would wait for this one for ever.
+pub fn end_on_panic() {
+    std::panic::set_hook(Box::new(|panic| {
+        let place = panic.location().map(|place| format!(" ({place})")).unwrap_or_default();
+        let text = panic.payload();
+        let literal = text.downcast_ref::<&str>().copied();
+        let what = literal.or(text.downcast_ref::<String>().map(String::as_str)).unwrap_or("a panic");
+        warn(format_args!("a defect of this program{place}: {what}; please report it with the scene"));
+        let code = Error::Internal(String::new()).exit_code();
+        if mpi::environment::is_initialized() {
+            SimpleCommunicator::world().abort(code);
+        }
+        std::process::exit(code);
+    }));
 }
 
 /// Ends all ranks where one has met an error inside a library, for which the others may wait.
@@ -119,12 +147,4 @@ fn abort_if_alone(world: &SimpleCommunicator, outcome: &Result<()>) {
         warn(format_args!("rank {}: {error}", world.rank()));
         world.abort(error.exit_code());
     }
-}
-
-/// Whether this process is alone or rank 0 of its launcher: known without MPI, so that what needs no solver starts none.
-fn is_first_process() -> bool {
-    ["OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"]
-        .iter()
-        .find_map(|name| std::env::var(name).ok())
-        .is_none_or(|rank| rank == "0")
 }

@@ -8,7 +8,7 @@ use mpi::traits::Communicator;
 use crate::composition;
 use crate::error::{Error, Result};
 use crate::loading::Phase;
-use crate::output::{Left, Rows, checkpoint, left};
+use crate::output::{self, Left, Rows, checkpoint, left};
 use crate::parallel::agree;
 use crate::scene::{Scene, differences};
 use crate::snapshot::Snapshot;
@@ -66,12 +66,11 @@ impl Origin<'_> {
         }
         let counts = snapshot.numbers("counts")?.map(|count: f64| count as usize);
         let [steps, pieces, rejected, newton, augmentations, planned_steps] = counts;
-        let [history, interface, bulk] = snapshot.numbers("rows")?.map(|count: f64| count as usize);
         Ok(Some(Begun {
             position,
             counts: Counts { steps, pieces, rejected, newton, augmentations, ..Counts::default() },
             planned_steps,
-            rows: Rows { history, interface, bulk },
+            rows: rows_of(&snapshot)?,
             started,
             snapshot,
         }))
@@ -106,6 +105,22 @@ pub fn save_counts(snapshot: &mut Snapshot, counts: Counts, planned_steps: usize
 /// Adds the rows of the result file that count.
 pub fn save_rows(snapshot: &mut Snapshot, rows: Rows) {
     snapshot.put("rows", [rows.history, rows.interface, rows.bulk].map(|count| count as f64).to_vec());
+    let halves = rows.sums.iter().flat_map(|sum| [sum >> 32, sum & 0xffff_ffff]);
+    snapshot.put("sums", halves.map(|half| half as f64).collect());
+}
+
+/// The rows of the result file that count, as [`save_rows`] keeps them.
+fn rows_of(snapshot: &Snapshot) -> Result<Rows> {
+    let [history, interface, bulk] = snapshot.numbers("rows")?.map(|count: f64| count as usize);
+    // Sums have more digits than a number holds: each is in two halves.
+    let halves: [f64; 6] = snapshot.numbers("sums")?;
+    let sums = [0, 2, 4].map(|i| (halves[i] as u64) << 32 | halves[i + 1] as u64);
+    Ok(Rows { history, interface, bulk, sums })
+}
+
+/// Whether the results are still what the checkpoint beside them counts. To be called on one rank.
+pub fn is_intact(results: &Path) -> Result<()> {
+    output::intact(results, rows_of(&stored(results)?.0)?)
 }
 
 /// Where the phase after the first `count` begins.
@@ -144,6 +159,20 @@ pub fn is_complete(out: &Path, scene: &Scene, scene_file: &Path) -> Result<bool>
         return Err(Error::Usage(reason));
     }
     Ok(false)
+}
+
+/// Refuses to begin anew where a run was stopped that can go on. To be called on one rank.
+pub fn refuse_unfinished(out: &Path) -> Result<()> {
+    // What cannot be read is no run that could go on; whether it may be replaced is seen when the file is made.
+    let Ok(Some(left)) = left(out) else { return Ok(()) };
+    let its_own = |found: &checkpoint::Checkpoint| found.started == left.started;
+    if left.status == "complete" || !checkpoint::read(out).ok().flatten().as_ref().is_some_and(its_own) {
+        return Ok(());
+    }
+    Err(Error::Usage(format!(
+        "{}: holds a run that was stopped: go on with it by --resume, or drop it and begin anew by --restart",
+        out.display()
+    )))
 }
 
 fn refuse_another_scene(file: &Path, stored: &str, scene: &Scene) -> Result<()> {

@@ -63,9 +63,9 @@ impl Progress {
             return Self::Lines { total, last: Instant::now() };
         };
         let bar = ProgressBar::with_draw_target(Some(total as u64), target);
-        // Within 80 columns: under mpirun the width is not known, and a line that wraps leaves pieces behind.
+        // Within any width, as a line that wraps leaves pieces behind; under mpirun, where it is not known, 80 columns.
         // A template that is wrong is a defect that the default one survives.
-        if let Ok(style) = ProgressStyle::with_template("{bar:16} {pos}/{len}  {eta:>3} left  {msg}") {
+        if let Ok(style) = ProgressStyle::with_template("{bar:12} {pos}/{len}  {eta:>3} left  {wide_msg}") {
             bar.set_style(style);
         }
         bar.tick();

@@ -32,6 +32,9 @@ pub struct RunArguments {
     /// Go on from the checkpoint of a run that was stopped, with the same scene and results
     #[arg(long)]
     resume: bool,
+    /// Begin anew where a run was stopped, and drop what it had come to
+    #[arg(long, conflicts_with = "resume")]
+    restart: bool,
     /// PETSc options, such as -ksp_type gmres -pc_type gamg
     #[arg(last = true, value_name = "PETSC OPTIONS")]
     petsc: Vec<String>,
@@ -39,7 +42,8 @@ pub struct RunArguments {
 
 /// Solves the scene on all ranks of the launcher.
 pub fn run(arguments: &RunArguments) -> Result<()> {
-    super::in_session(&arguments.petsc, |session, world| solve((session, world), &Interrupt::watch()?, arguments))
+    let interrupt = Interrupt::watch()?;
+    super::in_session(&arguments.petsc, |session, world| solve((session, world), &interrupt, arguments))
 }
 
 /// Reads, builds, runs and records; the error is the same on all ranks but for one inside a library.
@@ -65,6 +69,8 @@ fn solve(
             return Ok(());
         }
         origin = Origin::Checkpoint;
+    } else if !arguments.restart {
+        agree(world, if world.rank() == 0 { origin::refuse_unfinished(&out) } else { Ok(()) })?;
     }
 
     let job = Job {

@@ -11,6 +11,7 @@ use super::summary::seconds;
 use super::sweep::{line, replace};
 use super::terminal;
 use crate::error::{Error, Result};
+use crate::output::ours;
 use crate::parallel::agree;
 use crate::plot::replaceable;
 use crate::scene::Source;
@@ -151,14 +152,9 @@ fn default_output(scene: &Path) -> PathBuf {
 /// Makes the directory, and sees that what is in it may be replaced before anything is solved.
 fn prepare(out: &Path) -> Result<()> {
     std::fs::create_dir_all(out).map_err(|error| Error::file(out, error))?;
-    for (name, mark) in [("runs.csv", HEADER[0]), ("study.toml", MARK)] {
-        let path = out.join(name);
-        if std::fs::read_to_string(&path).is_ok_and(|text| !text.starts_with(mark)) {
-            return Err(Error::file(
-                &path,
-                "exists and was not written by mpjr study; name another directory with --out",
-            ));
-        }
+    let header = HEADER.join(",");
+    for (name, mark) in [("runs.csv", header.as_str()), ("study.toml", MARK)] {
+        ours::make_way_for_table(&out.join(name), |line| line == mark)?;
     }
     ["png", "svg"].iter().try_for_each(|kind| replaceable(&out.join(format!("work-precision.{kind}"))))
 }
@@ -171,9 +167,11 @@ fn told(changes: &str, run: Option<&Run>) -> String {
     }
 }
 
-/// `--set key=value ...`, quoted for a shell.
+/// `--set key=value ...`, for a shell.
 fn options(changes: &[String]) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "._=-+".contains(c);
+    // What `$(mpjr study ...)` puts into a command line is cut at blanks, and quotes stay in it: brackets and commas go
+    // without, as no file has such a name.
+    let plain = |c: char| c.is_ascii_alphanumeric() || "._=-+[],/:".contains(c);
     let quoted = |change: &String| match change.chars().all(plain) {
         true => format!("--set {change}"),
         false => format!("--set '{}'", change.replace('\'', r"'\''")),

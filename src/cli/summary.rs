@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::time::Duration;
 
 use super::material;
-use crate::composition::{self, Form, Outline, Stretch};
+use crate::composition::{self, Estimate, Form, Outline, Stretch, augmentations};
 use crate::energy::Energy;
 use crate::output::{HistoryRow, Status};
 use crate::petsc;
@@ -258,52 +258,6 @@ fn strategy(scene: &Scene) -> String {
         ],
     };
     format!("{asked}{}", lines.join(&format!("\n{:15}", "")))
-}
-
-/// How often a step is solved again for the multipliers; found: 0.1 times, where few nodes come into contact, to twice.
-fn augmentations(scene: &Scene) -> f64 {
-    match scene.contact.method {
-        Method::Penalty => 0.0,
-        Method::Augmented { .. } => 2.0,
-    }
-}
-
-/// A rough cost, from measured times: within a factor of three on a recent core.
-struct Estimate {
-    /// s per step.
-    step: f64,
-    /// bytes
-    memory: f64,
-}
-
-impl Estimate {
-    fn of(scene: &Scene, outline: &Outline) -> Self {
-        let unknowns = outline.unknowns as f64;
-        let face = 2.0 * (outline.face.edges + 1) as f64;
-        // A solution for new multipliers begins next to its end.
-        let newton = 4.0 + augmentations(scene);
-        // Nested dissection in the plane: n^1.5 operations, n log n entries; about half of both when symmetric.
-        let entries = |symmetry: f64| 8.0 * 5.0 * unknowns * unknowns.max(2.0).log2() * symmetry;
-        let (matrix, vector) = (18.0 * 12.0 * unknowns, 8.0 * unknowns);
-        let arms = (scene.materials.iter().map(|material| material.arms.len()).sum::<usize>() + 4) as f64;
-        // Half of the face in contact: a small dense factorisation and some products with the compliance.
-        let contact = newton * (2e-10 * (face / 2.0).powi(3).min(face.powi(2) * 300.0) + 3e-9 * face * face);
-        let solve = 3e-7 * unknowns * (1.0 + 0.05 * unknowns.max(2.0).log2());
-        let by_wave = scene.period().is_some();
-        let compliance = if by_wave { 0.0 } else { 8.0 * face * face };
-        let (step, memory) = match composition::form(scene) {
-            Form::Monolithic => (
-                newton * (2.0 * solve + 1.0e-7 * unknowns) + contact,
-                8.0 * face * face + entries(0.6) + 4.0 * matrix + arms * vector,
-            ),
-            Form::Following => (contact, compliance + 80.0 * unknowns),
-            Form::Remembering if by_wave => {
-                (contact + 3e-8 * unknowns * arms, (12.0 + arms) * vector + 80.0 * unknowns)
-            }
-            Form::Remembering => (contact + 2.0 * solve, compliance + entries(0.6) + 3.0 * matrix + arms * vector),
-        };
-        Self { step, memory: 5e7 + memory }
-    }
 }
 
 /// A duration for people.

@@ -9,7 +9,7 @@ use crate::bulk::{Bulk, Part, Series};
 use crate::element::Quadrilateral;
 use crate::error::{Error, Result};
 use crate::input;
-use crate::mesh::gmsh::{self, Flaw, Role, Roles};
+use crate::mesh::gmsh::{self, Flaw, Role, Roles, called};
 use crate::mesh::{Cell, Layer, Mesh, Sides};
 use crate::parallel::agree;
 use crate::petsc::Vector;
@@ -71,11 +71,18 @@ pub fn outline(scene: &Scene, file: &Path) -> Result<Outline> {
         }),
         scene::Body::Mesh(mesh) => {
             let mesh = file_mesh(&bytes(mesh)?, mesh, scene, file)?;
-            let triangles = mesh.cells.iter().filter(|cell| matches!(cell, Cell::Triangle(_))).count();
-            let cells = [mesh.cells.len() - triangles, triangles];
             let penalty = scene.contact.penalty.stiffness().is_none().then(|| penalty(scene, &mesh));
-            Ok(Outline { face: Stretch::of(scene, &mesh), unknowns: mesh.free_components(), cells, penalty })
+            Ok(Outline { penalty, ..Outline::of(scene, &mesh) })
         }
+    }
+}
+
+impl Outline {
+    /// That of a mesh that is there, without the penalty.
+    pub(super) fn of(scene: &Scene, mesh: &Mesh) -> Self {
+        let triangles = mesh.cells.iter().filter(|cell| matches!(cell, Cell::Triangle(_))).count();
+        let cells = [mesh.cells.len() - triangles, triangles];
+        Self { face: Stretch::of(scene, mesh), unknowns: mesh.free_components(), cells, penalty: None }
     }
 }
 
@@ -172,21 +179,25 @@ fn file_mesh(bytes: &[u8], mesh: &MeshFile, scene: &Scene, file: &Path) -> Resul
     Ok(built)
 }
 
-/// The message for a name that the file does not have.
-fn unknown(file: &str, role: Role, roles: &Roles, known: &[String]) -> String {
+/// The message for a group that the file does not have.
+fn unknown(file: &str, role: Role, roles: &Roles, known: &[(i64, Option<String>)]) -> String {
+    const LISTED: usize = 12;
     let (kind, name) = match role {
         Role::Contact => ("curve", &roles.contact),
         Role::Fixed(i) => ("curve", &roles.fixed[i]),
         Role::Roller(i) => ("curve", &roles.roller[i]),
         Role::Region(i) => ("surface", &roles.regions[i]),
     };
-    let names: Vec<&str> = known.iter().map(String::as_str).collect();
-    let advice = match names.is_empty() {
-        true => format!(
-            "it names none: give the geometry a Physical {} and mesh again",
+    let names: Vec<&str> = known.iter().filter_map(|(_, name)| name.as_deref()).collect();
+    let mut list: Vec<String> = known.iter().take(LISTED).map(|(tag, name)| called(*tag, name.as_deref())).collect();
+    list.extend((known.len() > LISTED).then(|| format!("{} more", known.len() - LISTED)));
+    let advice = match (list.is_empty(), scene::nearest(name, &names)) {
+        (true, _) => format!(
+            "it has none: give the geometry a Physical {} and mesh again",
             if kind == "curve" { "Curve" } else { "Surface" }
         ),
-        false => scene::advice(name, &names, "it has"),
+        (_, Some(near)) => format!("did you mean {near:?}? It has {}", list.join(", ")),
+        _ => format!("it has {}", list.join(", ")),
     };
     format!("{file} has no physical {kind} {name:?}; {advice}")
 }

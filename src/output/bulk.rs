@@ -14,13 +14,15 @@ use std::path::{Path, PathBuf};
 use std::sync::MutexGuard;
 
 use mpi::Count;
+use mpi::collective::SystemOperation;
 use mpi::datatype::{Partition, PartitionMut};
 use mpi::traits::{Communicator, CommunicatorCollectives, Equivalence};
 
 use super::columns::BULK;
 use super::recorder::{State, bytes};
-use super::store::{Table, failed};
+use super::store::{Table, failed, place};
 use super::{Recorder, xdmf};
+use crate::checksum::row_sum;
 use crate::error::{Error, Result};
 use crate::parallel::{agree, broadcast};
 
@@ -50,6 +52,8 @@ pub struct Frame<'a> {
 struct Target {
     path: PathBuf,
     nodes: usize,
+    /// The number of the frame.
+    row: usize,
     /// Where displacement and stress of the frame begin in the file.
     at: [u64; 2],
 }
@@ -65,8 +69,10 @@ where
     let block = agree(comm, check(frame, target.nodes)).map(|()| redistribute(comm, frame, target.nodes))?;
     let block = agree(comm, block)?;
     let written = write_block(&target, &block).map_err(|error| failed(&target.path, error));
-    agree(comm, written)?;
-    agree(comm, held.as_mut().map_or(Ok(()), |state| commit(state, frame.time)))
+    let mine = agree(comm, written)?;
+    let mut sum = 0;
+    comm.all_reduce_into(&mine, &mut sum, SystemOperation::sum());
+    agree(comm, held.as_mut().map_or(Ok(()), |state| commit(state, frame.time, sum)))
 }
 
 /// Makes room for a frame and tells all ranks where it is.
@@ -77,18 +83,19 @@ where
     let mine = match held {
         Some(state) => reserve(state),
         None if comm.rank() == 0 => Err(Error::Internal("bulk fields without a recorder on rank 0".into())),
-        None => Ok(Target { path: PathBuf::new(), nodes: 0, at: [0; 2] }),
+        None => Ok(Target { path: PathBuf::new(), nodes: 0, row: 0, at: [0; 2] }),
     };
     let mine = agree(comm, mine)?;
     let mut path = mine.path.as_os_str().as_bytes().to_vec();
     broadcast(comm, 0, &mut path);
-    let mut numbers = [mine.nodes as u64, mine.at[0], mine.at[1]].map(u64::to_ne_bytes).concat();
+    let mut numbers = [mine.nodes as u64, mine.row as u64, mine.at[0], mine.at[1]].map(u64::to_ne_bytes).concat();
     broadcast(comm, 0, &mut numbers);
     let number = |index: usize| numbers.as_chunks().0.get(index).map_or(0, |bytes| u64::from_ne_bytes(*bytes));
     Ok(Target {
         path: Path::new(OsStr::from_bytes(&path)).to_owned(),
         nodes: number(0) as usize,
-        at: [number(1), number(2)],
+        row: number(1) as usize,
+        at: [number(2), number(3)],
     })
 }
 
@@ -104,7 +111,7 @@ fn reserve(state: &mut State) -> Result<Target> {
     drop(store.open()?);
     let row = store.rows(Table::Bulk);
     let at = [store.row_at(Table::Bulk, 0, row)?, store.row_at(Table::Bulk, 1, row)?];
-    Ok(Target { path: store.path().to_owned(), nodes: mesh.nodes, at })
+    Ok(Target { path: store.path().to_owned(), nodes: mesh.nodes, row, at })
 }
 
 fn check(frame: &Frame, nodes: usize) -> Result<()> {
@@ -213,27 +220,32 @@ where
     received
 }
 
-/// Writes one rank's part.
-fn write_block(target: &Target, block: &Block) -> std::io::Result<()> {
+/// Writes one rank's part; its share of the sum of the frame.
+fn write_block(target: &Target, block: &Block) -> std::io::Result<u64> {
     if block.stress.is_empty() {
-        return Ok(());
+        return Ok(0);
     }
     let file = OpenOptions::new().write(true).open(&target.path)?;
-    for ((field, values), start) in BULK.iter().zip([&block.displacement, &block.stress]).zip(target.at) {
-        let offset = start + (block.first * field.components.len() * size_of::<f64>()) as u64;
-        file.write_all_at(&bytes(values), offset)?;
+    let mut sum = 0_u64;
+    for (index, (field, values)) in BULK.iter().zip([&block.displacement, &block.stress]).enumerate() {
+        let (first, bytes) = (block.first * field.components.len(), bytes(values));
+        file.write_all_at(&bytes, target.at[index] + (first * size_of::<f64>()) as u64)?;
+        sum = row_sum(place(index, target.row), first, &bytes).wrapping_add(sum);
     }
     // Network file systems tell only now what became of the data.
-    file.sync_data()
+    file.sync_data()?;
+    Ok(sum)
 }
 
-/// Makes the frame visible.
-fn commit(state: &mut State, time: f64) -> Result<()> {
+/// Makes the frame visible, of which `sum` is that of its fields.
+fn commit(state: &mut State, time: f64, sum: u64) -> Result<()> {
     let store = &mut state.store;
     let file = store.open()?;
-    let at = store.row_at(Table::Bulk, BULK.len(), store.rows(Table::Bulk))?;
-    file.write_all_at(&time.to_ne_bytes(), at).map_err(|error| failed(store.path(), error))?;
-    store.commit(&file, &[(Table::Bulk, 1)])?;
+    let row = store.rows(Table::Bulk);
+    let (at, bytes) = (store.row_at(Table::Bulk, BULK.len(), row)?, time.to_ne_bytes());
+    file.write_all_at(&bytes, at).map_err(|error| failed(store.path(), error))?;
+    let sum = row_sum(place(BULK.len(), row), 0, &bytes).wrapping_add(sum);
+    store.commit(&file, &[(Table::Bulk, 1, sum)])?;
     state.bulk_times.push(time);
     state.mesh.map_or(Ok(()), |mesh| xdmf::write(state.store.path(), &state.version, mesh, &state.bulk_times))
 }

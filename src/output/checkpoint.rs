@@ -4,7 +4,7 @@
 //! have been forced to the disk: at every moment the last whole checkpoint and all rows before it are there.
 //!
 //! The format is this program's own, so that every write is seen to succeed: the HDF5 library, whose files are for
-//! other programs to read, does not survive a disk that fills up while it writes. A line `mpjr checkpoint 3`, the
+//! other programs to read, does not survive a disk that fills up while it writes. A line `mpjr checkpoint 4`, the
 //! length of a TOML header, the header (scene, `started`, names and lengths of the lists), the numbers as 8 bytes
 //! each, least significant byte first, and a checksum of all that.
 
@@ -14,15 +14,15 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::recorder::scratch;
+use super::ours::{self, scratch};
 use super::store::failed;
 use crate::checksum::checksum;
 use crate::error::{Error, Result};
 
 /// The number goes up when what a checkpoint holds changes its meaning.
-const MARK: &[u8] = b"mpjr checkpoint 3\n";
+const MARK: &[u8] = b"mpjr checkpoint 4\n";
 /// What the mark of every format begins with.
-const ANY_MARK: &[u8] = b"mpjr checkpoint ";
+pub(super) const ANY_MARK: &[u8] = b"mpjr checkpoint ";
 
 /// What stands before the numbers.
 #[derive(Serialize, Deserialize)]
@@ -84,6 +84,9 @@ pub fn read(results: &Path) -> Result<Option<Checkpoint>> {
 /// Removes the checkpoint of the result file `results`, if there is one.
 pub fn remove(results: &Path) -> Result<()> {
     let path = beside(results);
+    if !ours::begins_with(&path, &[ANY_MARK]) {
+        return Ok(());
+    }
     match std::fs::remove_file(&path) {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(Error::file(&path, error)),
         _ => Ok(()),

@@ -29,6 +29,7 @@ pub mod reader;
 
 mod columns;
 mod locate;
+pub mod ours;
 mod recorder;
 mod resume;
 mod skeleton;
@@ -39,7 +40,7 @@ use std::time::SystemTime;
 
 pub use columns::{HistoryRow, InterfaceFrame};
 pub use recorder::Recorder;
-pub use resume::{Left, left};
+pub use resume::{Left, intact, left};
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -114,6 +115,15 @@ pub struct Rows {
     pub interface: usize,
     /// Bulk frames.
     pub bulk: usize,
+    /// Sums of their numbers, which tell whether a file still is what was written.
+    pub sums: [u64; 3],
+}
+
+impl Rows {
+    /// Of the history, of the interface fields, bulk frames.
+    fn counts(&self) -> [usize; 3] {
+        [self.history, self.interface, self.bulk]
+    }
 }
 
 /// The mesh and the number of the bulk fields to come.

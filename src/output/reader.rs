@@ -52,6 +52,11 @@ impl Results {
         Ok(Self { path: path.to_owned(), file })
     }
 
+    /// The file.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// A string attribute of the root, such as `title`, `scene` or `status`.
     pub fn text(&self, name: &str) -> Result<String> {
         let value = self.file.attr(name).and_then(|attribute| attribute.read_scalar::<VarLenUnicode>());

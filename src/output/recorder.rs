@@ -10,7 +10,7 @@ use super::columns::{self, INTERFACE, Value};
 use super::reader::Results;
 use super::store::{Store, Table, failed};
 use super::xdmf::MeshSize;
-use super::{HistoryRow, InterfaceFrame, Metadata, Plan, Rows, Status, resume, skeleton, xdmf};
+use super::{HistoryRow, InterfaceFrame, Metadata, Plan, Rows, Status, ours, resume, skeleton, xdmf};
 use crate::error::{Error, Result};
 
 /// Rows wait no longer than this before they are written.
@@ -55,9 +55,12 @@ impl Recorder {
     /// disk is full; nothing was changed then.
     pub fn create(path: &Path, metadata: &Metadata, plan: Plan, first: &HistoryRow) -> Result<Self> {
         let path = absolute(path)?;
-        refuse_foreign(&path)?;
-        xdmf::refuse_foreign(&path)?;
-        let scratch = scratch(&path);
+        ours::make_way(&path)?;
+        let scratch = ours::scratch(&path);
+        // The system's words on a directory that cannot be written are plainer than the library's.
+        let probe = OpenOptions::new().write(true).create_new(true).open(&scratch);
+        probe
+            .map_err(|error| Error::file(&path, format!("cannot be created: {error}; name another file with --out")))?;
         let made = prepare(&scratch, &path, metadata, plan, first);
         if made.is_err() {
             // The error at hand says more than one about a leftover.
@@ -72,7 +75,9 @@ impl Recorder {
     /// # Errors
     /// `Error::File` when the file cannot be read or does not have these rows; nothing was changed then.
     pub fn resume(path: &Path, plan: Plan, rows: Rows) -> Result<Self> {
-        Self::start(resume::reopen(&absolute(path)?, plan, rows)?)
+        let path = absolute(path)?;
+        ours::make_way(&path)?;
+        Self::start(resume::reopen(&path, plan, rows)?)
     }
 
     fn start(state: State) -> Result<Self> {
@@ -131,8 +136,7 @@ impl Recorder {
         state.flush()?;
         let store = &state.store;
         store.open()?.sync_data().map_err(|error| failed(store.path(), error))?;
-        let rows = |table| store.rows(table);
-        Ok(Rows { history: rows(Table::History), interface: rows(Table::Interface), bulk: rows(Table::Bulk) })
+        Ok(store.committed())
     }
 
     /// Writes what is left and how the run ended. Without this call the file says "stopped".
@@ -217,6 +221,7 @@ impl State {
         self.make_room(Table::History, self.history.len())?;
         self.make_room(Table::Interface, self.interface.len())?;
         let file = self.store.open()?;
+        let [mut history, mut interface] = [0_u64; 2];
         for (ahead, row) in self.history.iter().enumerate() {
             let values: Vec<[u8; 8]> = columns::history(self.plan.energy)
                 .map(|column| match column.value {
@@ -225,16 +230,17 @@ impl State {
                 })
                 .collect();
             let values: Vec<&[u8]> = values.iter().map(|value| value.as_slice()).collect();
-            self.store.write_row(&file, Table::History, ahead, &values)?;
+            history = self.store.write_row(&file, Table::History, ahead, &values)?.wrapping_add(history);
         }
         for (ahead, frame) in self.interface.iter().enumerate() {
             let mut values: Vec<Vec<u8>> = INTERFACE.iter().map(|field| bytes((field.values)(frame))).collect();
             values.push(bytes(&[frame.time]));
             let values: Vec<&[u8]> = values.iter().map(Vec::as_slice).collect();
-            self.store.write_row(&file, Table::Interface, ahead, &values)?;
+            interface = self.store.write_row(&file, Table::Interface, ahead, &values)?.wrapping_add(interface);
         }
         self.store.set_wall_seconds(&file, self.begun.elapsed().as_secs_f64())?;
-        self.store.commit(&file, &[(Table::History, self.history.len()), (Table::Interface, self.interface.len())])?;
+        let [rows, frames] = [self.history.len(), self.interface.len()];
+        self.store.commit(&file, &[(Table::History, rows, history), (Table::Interface, frames, interface)])?;
         self.history.clear();
         self.interface.clear();
         Ok(())
@@ -256,9 +262,6 @@ pub(super) fn bytes(values: &[f64]) -> Vec<u8> {
 
 /// Makes the file complete with row 0 under the name `scratch`, then puts it at `path`.
 fn prepare(scratch: &Path, path: &Path, metadata: &Metadata, plan: Plan, first: &HistoryRow) -> Result<State> {
-    // The system's words on a directory that cannot be written are plainer than the library's.
-    let probe = OpenOptions::new().write(true).create(true).truncate(true).open(scratch);
-    probe.map_err(|error| Error::file(path, format!("cannot be created: {error}; name another file with --out")))?;
     std::fs::remove_file(scratch).map_err(|error| Error::file(path, error))?;
 
     skeleton::create(scratch, metadata, &plan).map_err(|error| about(path, error))?;
@@ -300,25 +303,4 @@ fn absolute(path: &Path) -> Result<PathBuf> {
         Err(error) => return Err(Error::file(&path, error)),
     }
     Ok(path)
-}
-
-/// A name beside `path` that no other process uses.
-pub(super) fn scratch(path: &Path) -> PathBuf {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".mpjr-{}.part", std::process::id()));
-    path.with_file_name(name)
-}
-
-/// An existing file is replaced only if this program wrote it.
-fn refuse_foreign(path: &Path) -> Result<()> {
-    match std::fs::symlink_metadata(path) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
-        Err(error) => return Err(Error::file(path, error)),
-        Ok(about) if about.is_dir() => return Err(Error::file(path, "is a directory; name a file with --out")),
-        Ok(_) => {}
-    }
-    if super::reader::is_ours(path) {
-        return Ok(());
-    }
-    Err(Error::file(path, "exists and was not written by mpjr; remove it or name another file with --out"))
 }

@@ -15,11 +15,12 @@ pub(super) fn reopen(path: &Path, plan: Plan, rows: Rows) -> Result<State> {
     let results = Results::open(path)?;
     let spent = Duration::try_from_secs_f64(results.number("wall_seconds")?).unwrap_or_default();
     let version = results.text("mpjr_version")?;
+    unchanged(&results, &plan)?;
     let mut times = if rows.bulk > 0 { results.bulk("time")?.values } else { Vec::new() };
     times.truncate(rows.bulk);
     drop(results);
 
-    let mut store = Store::reopen(path, &plan, [rows.history, rows.interface, rows.bulk])?;
+    let mut store = Store::reopen(path, &plan, rows)?;
     let file = store.open()?;
     store.set_status(&file, Status::Stopped)?;
     store.show_committed_only(&file)?;
@@ -30,6 +31,32 @@ pub(super) fn reopen(path: &Path, plan: Plan, rows: Rows) -> Result<State> {
     }
     state.bulk_times = times;
     Ok(state)
+}
+
+/// Whether the first `rows` of the results at `path` are as they were written.
+///
+/// # Errors
+/// `Error::File` when they are not, or cannot be read.
+pub fn intact(path: &Path, rows: Rows) -> Result<()> {
+    let results = Results::open(path)?;
+    let bulk = results.has("bulk/time").then(super::BulkPlan::default);
+    let plan = Plan { energy: results.has("history/energy/stored"), bulk, ..Plan::default() };
+    drop(results);
+    Store::reopen(path, &plan, rows).map(|_| ())
+}
+
+/// Refuses results whose nodes or cells are not those of the plan.
+fn unchanged(results: &Results, plan: &Plan) -> Result<()> {
+    let same = |name: &str, planned: &[f64]| Ok::<_, Error>(results.field(name)?.values == planned);
+    let mut whole = same("interface/x", &plan.interface_x)?;
+    if let Some(bulk) = &plan.bulk {
+        let cells: Vec<f64> = bulk.cells.as_flattened().iter().map(|&node| node as f64).collect();
+        whole &= same("bulk/coordinates", bulk.coordinates.as_flattened())? && same("bulk/cells", &cells)?;
+    }
+    match whole {
+        true => Ok(()),
+        false => Err(Error::file(results.path(), store::DAMAGED)),
+    }
 }
 
 /// Adds all rows of `results` but the unloaded state to the file of `state`.
@@ -62,6 +89,7 @@ fn append_table(state: &mut State, results: &Results, (table, skip): (Table, usi
     let added = rows.saturating_sub(skip);
     state.make_room(table, added)?;
     let file = state.store.open()?;
+    let mut sum = 0_u64;
     for row in skip..rows {
         let values: Vec<Vec<u8>> = fields
             .iter()
@@ -72,9 +100,9 @@ fn append_table(state: &mut State, results: &Results, (table, skip): (Table, usi
             })
             .collect();
         let values: Vec<&[u8]> = values.iter().map(Vec::as_slice).collect();
-        state.store.write_row(&file, table, row - skip, &values)?;
+        sum = state.store.write_row(&file, table, row - skip, &values)?.wrapping_add(sum);
     }
-    state.store.commit(&file, &[(table, added)])
+    state.store.commit(&file, &[(table, added, sum)])
 }
 
 /// What an earlier run left at a path.

@@ -6,7 +6,8 @@ use std::os::unix::fs::{FileExt, MetadataExt};
 use std::path::{Path, PathBuf};
 
 use super::columns::{self, BULK, INTERFACE};
-use super::{Plan, Status, locate};
+use super::{Plan, Rows, Status, locate};
+use crate::checksum::row_sum;
 use crate::error::{Error, Result};
 use crate::petsc::object_address::object_address;
 
@@ -38,6 +39,8 @@ pub(super) struct Store {
     identity: (u64, u64),
     /// Each table's series, in the order that rows give their values, and its number of committed rows.
     tables: [(Vec<Series>, usize); 3],
+    /// The sums of each table's committed rows; see [`row_sum`].
+    sums: [u64; 3],
     /// The bytes of the file from the first to the last extent, as they are on disk.
     extents: (u64, Vec<u8>),
     wall_seconds_at: u64,
@@ -95,13 +98,14 @@ impl Store {
         let (_, values) = locate::attribute(raw, root, "status_values")?;
         let status_values = values.as_chunks().0.to_vec();
         let (path, identity) = (path.to_owned(), (about.dev(), about.ino()));
-        Ok(Self { path, identity, tables, extents: (first, extents), wall_seconds_at, status_at, status_values })
+        let extents = (first, extents);
+        Ok(Self { path, identity, tables, sums: [0; 3], extents, wall_seconds_at, status_at, status_values })
     }
 
-    /// Learns where everything is from the file at `path` of which `rows` of each table are to stay.
-    pub(super) fn reopen(path: &Path, plan: &Plan, rows: [usize; 3]) -> Result<Self> {
+    /// Learns where everything is from the file at `path` of which `rows` are to stay, which must be as they were written.
+    pub(super) fn reopen(path: &Path, plan: &Plan, rows: Rows) -> Result<Self> {
         let mut store = Self::locate(path, plan)?;
-        for ((series, count), rows) in store.tables.iter_mut().zip(rows) {
+        for ((series, count), rows) in store.tables.iter_mut().zip(rows.counts()) {
             let visible = |series: &Series| {
                 let at = (series.extent_at - store.extents.0) as usize;
                 let bytes = store.extents.1.get(at..at + 8).and_then(|bytes| bytes.try_into().ok());
@@ -115,7 +119,35 @@ impl Store {
             }
             *count = rows;
         }
-        Ok(store)
+        store.sums = store.sums_on_disk().map_err(|error| Error::file(path, error))?;
+        match store.sums == rows.sums {
+            true => Ok(store),
+            false => Err(Error::file(path, DAMAGED)),
+        }
+    }
+
+    /// The sums of the committed rows as they are in the file now.
+    fn sums_on_disk(&self) -> io::Result<[u64; 3]> {
+        let file = File::open(&self.path)?;
+        let mut sums = [0; 3];
+        let mut bytes = Vec::new();
+        for (sum, (series, rows)) in sums.iter_mut().zip(&self.tables) {
+            for (index, series) in series.iter().enumerate() {
+                bytes.resize(series.row_bytes, 0);
+                for row in 0..*rows {
+                    let at = series.row_at(row).ok_or(io::ErrorKind::UnexpectedEof)?;
+                    file.read_exact_at(&mut bytes, at)?;
+                    *sum = row_sum(place(index, row), 0, &bytes).wrapping_add(*sum);
+                }
+            }
+        }
+        Ok(sums)
+    }
+
+    /// The rows that are there to stay.
+    pub(super) fn committed(&self) -> Rows {
+        let [history, interface, bulk] = [Table::History, Table::Interface, Table::Bulk].map(|table| self.rows(table));
+        Rows { history, interface, bulk, sums: self.sums }
     }
 
     /// The file.
@@ -142,10 +174,7 @@ impl Store {
     pub(super) fn row_at(&self, table: Table, index: usize, row: usize) -> Result<u64> {
         let series = self.tables[table as usize].0.get(index);
         series
-            .and_then(|series| {
-                let chunk = series.chunks.get(row / series.chunk_rows)?;
-                Some(chunk + (row % series.chunk_rows * series.row_bytes) as u64)
-            })
+            .and_then(|series| series.row_at(row))
             .ok_or_else(|| Error::Internal(format!("no room for row {row} in {table:?}")))
     }
 
@@ -163,12 +192,13 @@ impl Store {
     }
 
     /// Writes one row of a table beyond the committed ones: `ahead` rows further, one run of bytes per series. It is
-    /// not visible before [`Self::commit`].
-    pub(super) fn write_row(&self, file: &File, table: Table, ahead: usize, values: &[&[u8]]) -> Result<()> {
+    /// not visible before [`Self::commit`], which wants the row's sum.
+    pub(super) fn write_row(&self, file: &File, table: Table, ahead: usize, values: &[&[u8]]) -> Result<u64> {
         let (series, rows) = &self.tables[table as usize];
         if series.len() != values.len() {
             return Err(Error::Internal(format!("a row of {table:?} with {} values", values.len())));
         }
+        let mut sum = 0_u64;
         for (index, (series, bytes)) in series.iter().zip(values).enumerate() {
             if bytes.len() != series.row_bytes {
                 let (name, given, needed) = (&series.name, bytes.len() / 8, series.row_bytes / 8);
@@ -176,14 +206,15 @@ impl Store {
             }
             let at = self.row_at(table, index, rows + ahead)?;
             file.write_all_at(bytes, at).map_err(|error| failed(&self.path, error))?;
+            sum = row_sum(place(index, rows + ahead), 0, bytes).wrapping_add(sum);
         }
-        Ok(())
+        Ok(sum)
     }
 
-    /// Makes `added` rows of each table visible, in one write.
-    pub(super) fn commit(&mut self, file: &File, added: &[(Table, usize)]) -> Result<()> {
+    /// Makes `added` rows of each table visible, in one write; with the rows go their sums.
+    pub(super) fn commit(&mut self, file: &File, added: &[(Table, usize, u64)]) -> Result<()> {
         let mut extents = self.extents.1.clone();
-        for &(table, count) in added {
+        for &(table, count, _) in added {
             let (series, rows) = &self.tables[table as usize];
             for series in series {
                 let at = (series.extent_at - self.extents.0) as usize;
@@ -192,15 +223,16 @@ impl Store {
         }
         file.write_all_at(&extents, self.extents.0).map_err(|error| failed(&self.path, error))?;
         self.extents.1 = extents;
-        for &(table, count) in added {
+        for &(table, count, sum) in added {
             self.tables[table as usize].1 += count;
+            self.sums[table as usize] = self.sums[table as usize].wrapping_add(sum);
         }
         Ok(())
     }
 
     /// Forgets the full extents that the library left: only the committed rows show.
     pub(super) fn show_committed_only(&mut self, file: &File) -> Result<()> {
-        self.commit(file, &[(Table::History, 0), (Table::Interface, 0), (Table::Bulk, 0)])
+        self.commit(file, &[Table::History, Table::Interface, Table::Bulk].map(|table| (table, 0, 0)))
     }
 
     /// Sets the attribute `wall_seconds`.
@@ -218,7 +250,7 @@ impl Store {
     /// The same file with room for twice the rows of `table`, which must be full. The file is copied, extended by the
     /// library and put in the place of the old one by a rename, so that at every moment one of the two is there.
     pub(super) fn grown(&self, table: Table) -> Result<Self> {
-        let scratch = super::recorder::scratch(&self.path);
+        let scratch = super::ours::scratch(&self.path);
         let grown = self.extended_copy(table, &scratch);
         if grown.is_err() {
             // The error at hand says more than one about a leftover.
@@ -253,6 +285,7 @@ impl Store {
         for (new, old) in grown.tables.iter_mut().zip(&self.tables) {
             new.1 = old.1;
         }
+        grown.sums = self.sums;
         grown.show_committed_only(&grown.open()?)?;
         std::fs::rename(scratch, &self.path).map_err(|error| failed(&self.path, error))?;
         grown.moved_to(&self.path);
@@ -271,11 +304,28 @@ pub(super) fn failed(path: &Path, error: io::Error) -> Error {
     Error::file(path, format!("{error}{remedy}. What was written before is kept"))
 }
 
+pub(super) const DAMAGED: &str = "was changed since the checkpoint beside it was written: its rows are not those that it counts; \
+                       restore the file, or begin anew with --restart";
+
+/// What tells the rows of a table apart: that of the series number `index` with the number `row`.
+pub(super) fn place(index: usize, row: usize) -> u64 {
+    (index as u64) << 48 | row as u64
+}
+
 impl Series {
+    /// Where a row begins in the file; none beyond capacity.
+    fn row_at(&self, row: usize) -> Option<u64> {
+        let chunk = self.chunks.get(row / self.chunk_rows)?;
+        Some(chunk + (row % self.chunk_rows * self.row_bytes) as u64)
+    }
+
     fn find(library: &hdf5::File, raw: &File, name: &str) -> hdf5::Result<Self> {
         let set = library.dataset(name)?;
         let header = object_address(&set)?;
         let (extent_at, _) = locate::extent(raw, header).map_err(|error| error.to_string())?;
+        if !(set.dtype()?.is::<f64>() || set.dtype()?.is::<i64>()) {
+            return Err(format!("/{name} does not hold numbers of 8 bytes").into());
+        }
         let shape = set.chunk().ok_or_else(|| format!("/{name} is not chunked"))?;
         let mut chunks = (0..set.num_chunks().unwrap_or(0))
             .map(|index| set.chunk_info(index).ok_or_else(|| format!("/{name} has no chunk {index}").into()))

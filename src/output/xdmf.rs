@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use super::columns::BULK;
 use crate::error::{Error, Result};
 
-/// The mark of a file that this program wrote.
-const MARK: &str = "<!-- Written by mpjr";
+/// How a file begins that this program wrote.
+pub(super) const BEGIN: &[u8] =
+    b"<?xml version=\"1.0\" ?>\n<!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<!-- Written by mpjr";
 
 /// Numbers of nodes and cells.
 #[derive(Debug, Clone, Copy)]
@@ -22,19 +23,11 @@ pub(super) fn beside(results: &Path) -> PathBuf {
     results.with_extension("xdmf")
 }
 
-/// An existing file is replaced only if this program wrote it.
-pub(super) fn refuse_foreign(results: &Path) -> Result<()> {
-    let path = beside(results);
-    if path == results {
-        return Err(Error::file(results, "is the name of the XDMF file; end the name of the results in .h5"));
-    }
-    match std::fs::read(&path) {
-        Ok(bytes) if String::from_utf8_lossy(&bytes).contains(MARK) => Ok(()),
-        Ok(_) => {
-            Err(Error::file(&path, "exists and was not written by mpjr; remove it or choose another name with --out"))
-        }
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
-        Err(error) => Err(Error::file(&path, error)),
+/// The results must not take this file's name.
+pub(super) fn refuse_same_name(results: &Path) -> Result<()> {
+    match beside(results) == results {
+        true => Err(Error::file(results, "is the name of the XDMF file; end the name of the results in .h5")),
+        false => Ok(()),
     }
 }
 
@@ -50,7 +43,7 @@ pub(super) fn remove_stale(results: &Path) -> Result<()> {
 /// Writes the file anew with one grid for each of `times`, s; readers see the old one or the new one.
 pub(super) fn write(results: &Path, version: &str, mesh: MeshSize, times: &[f64]) -> Result<()> {
     let path = beside(results);
-    let scratch = super::recorder::scratch(&path);
+    let scratch = super::ours::scratch(&path);
     let name = results.file_name().unwrap_or_default().to_string_lossy();
     let document = text(&escape(&name), version, mesh, times);
     let outcome = std::fs::write(&scratch, document).and_then(|()| std::fs::rename(&scratch, &path));
@@ -67,13 +60,12 @@ fn text(name: &str, version: &str, mesh: MeshSize, times: &[f64]) -> String {
     let MeshSize { nodes, cells } = mesh;
     let frames = times.len();
     let mut out = format!(
-        r#"<?xml version="1.0" ?>
-<!DOCTYPE Xdmf SYSTEM "Xdmf.dtd" []>
-{MARK} {version}; the fields are in the HDF5 file of the same name. -->
+        r#"{} {version}; the fields are in the HDF5 file of the same name. -->
 <Xdmf Version="2.0">
   <Domain>
     <Grid Name="bulk" GridType="Collection" CollectionType="Temporal">
-"#
+"#,
+        String::from_utf8_lossy(BEGIN)
     );
     for (frame, time) in times.iter().enumerate() {
         // Writing to a string cannot fail.

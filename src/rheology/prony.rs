@@ -1,5 +1,7 @@
 //! A normalised Prony series: the relaxation of one modulus as a sum of decaying exponentials.
 
+use std::collections::HashMap;
+
 use nalgebra::Complex;
 
 /// One Maxwell arm.
@@ -37,8 +39,11 @@ impl Prony {
     /// The weights over a list of times that several series share: zero where this one has no arm. Arms of one time
     /// are added.
     pub fn weights_over(&self, times: &[f64]) -> Vec<f64> {
-        let at = |time: &f64| self.arms.iter().filter(|arm| arm.time == *time).map(|arm| arm.weight).sum();
-        times.iter().map(at).collect()
+        let mut at: HashMap<u64, f64> = HashMap::new();
+        for arm in &self.arms {
+            *at.entry(arm.time.to_bits()).or_default() += arm.weight;
+        }
+        times.iter().map(|time| at.get(&time.to_bits()).copied().unwrap_or(0.0)).collect()
     }
 
     /// M(t)/M_inst at t >= 0 s.

@@ -1,6 +1,7 @@
 //! What the parts of a scene have to do with one another: physics and size, not format. Each check is visible whole;
 //! each error is the key and the reason.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use super::{Arm, Extend, Indenter, Layer, Material, Memory, Method, Phase, Scene, Sides, Stepping, When, keys};
@@ -192,21 +193,26 @@ fn approach(phase: &Phase, scene: &Scene) -> Check {
     }
 }
 
+const TWICE: &str = "is in the list already";
+
 /// The moments are in the history, each once.
 fn moments(moments: &[When], phases: &[Phase]) -> Check {
-    let names: Vec<&str> = phases.iter().map(|phase| phase.name.as_str()).collect();
+    let names: HashSet<&str> = phases.iter().map(|phase| phase.name.as_str()).collect();
+    let mut before = HashSet::new();
     let end: f64 = phases.iter().map(|phase| phase.duration).sum();
     for (index, moment) in moments.iter().enumerate() {
         let key = format!("output.bulk_at.{index}");
         match moment {
-            When::PhaseEnd(name) if !names.contains(&name.as_str()) => {
+            When::PhaseEnd(name) if !names.contains(name.as_str()) => {
+                let names: Vec<&str> = phases.iter().map(|phase| phase.name.as_str()).collect();
                 return fail(&key, format!("no phase {name:?}; {}", keys::advice(name, &names, "the phases are")));
             }
             // A sum of durations may fall short of what it means by round-off.
             When::Time(time) if *time > end * (1.0 + 1e-9) => {
                 return fail(&key, format!("must be a time within the history, up to {end:?} s, got {time:?}"));
             }
-            _ if moments[..index].contains(moment) => return fail(&key, "is in the list already"),
+            When::PhaseEnd(name) if !before.insert(Ok(name)) => return fail(&key, TWICE),
+            When::Time(time) if !before.insert(Err(time.to_bits())) => return fail(&key, TWICE),
             _ => {}
         }
     }

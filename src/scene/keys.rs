@@ -154,6 +154,14 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// A name that may be absent: a text, or a whole number as the text that it stands for.
+    pub fn optional_label(&self, key: &str, what: &str) -> Result<Option<String>> {
+        match self.table.get(key).and_then(label) {
+            Some(number) => Ok(Some(number)),
+            None => self.optional_text(key, what),
+        }
+    }
+
     /// One of the `accepted` words, which must be there; the words in `later` belong to later versions.
     pub fn choice<T: Copy>(&self, key: &str, accepted: &[(&str, T)], later: &[&str]) -> Result<T> {
         self.optional_choice(key, accepted, later)?.ok_or_else(|| self.missing(key, &either(accepted)))
@@ -237,6 +245,11 @@ pub(super) fn number(value: &Value) -> Option<f64> {
     }
 }
 
+/// A whole number where a name may stand, as a text.
+pub(super) fn label(value: &Value) -> Option<String> {
+    value.as_integer().map(|number| number.to_string())
+}
+
 /// A value as it may stand in a message: as it would be typed, and on a short line.
 pub(super) fn show(value: &Value) -> String {
     const LONGEST: usize = 60;
@@ -256,7 +269,7 @@ pub(super) fn show(value: &Value) -> String {
 }
 
 /// What to write instead of an unknown word: the nearest known one, or all of them when none is near.
-pub(crate) fn advice(word: &str, known: &[&str], title: &str) -> String {
+pub(super) fn advice(word: &str, known: &[&str], title: &str) -> String {
     match nearest(word, known) {
         Some(name) => format!("did you mean \"{name}\"?"),
         None => format!("{title}: {}", known.join(", ")),
@@ -264,7 +277,7 @@ pub(crate) fn advice(word: &str, known: &[&str], title: &str) -> String {
 }
 
 /// The known word that looks most like this one, if any does.
-fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     const ALIKE: f64 = 0.75;
     let word = word.to_lowercase();
     known

@@ -23,7 +23,7 @@ pub use checks::whole_periods;
 pub use differences::differences;
 pub use include::{Load, include, open};
 pub use indenter::{Extend, Indenter, Rms};
-pub(crate) use keys::advice;
+pub(crate) use keys::nearest;
 pub use overrides::{get, set};
 pub use penalty::{added_compliance, penalty_for, penalty_on_mesh};
 pub use read::{from_table, parse, read, read_with};
@@ -354,6 +354,16 @@ pub enum When {
     PhaseEnd(String),
     /// s; a step ends there.
     Time(f64),
+}
+
+impl When {
+    /// The name of the phase whose end it is, if it is one.
+    pub fn phase_end(&self) -> Option<&str> {
+        match self {
+            Self::PhaseEnd(name) => Some(name),
+            Self::Time(_) => None,
+        }
+    }
 }
 
 /// Where a scene came from: the file and the `--set` overrides, for messages.

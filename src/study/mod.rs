@@ -65,6 +65,10 @@ pub struct Run {
     pub memory: f64,
 }
 
+/// The hysteretic force counts in full where it comes to this share of N, and in proportion where it is less: a symmetric
+/// profile at rest and an elastic body have nothing of it but round-off and the mesh's error.
+const HYSTERETIC: f64 = 1e-3;
+
 /// The largest differences of the forces between two histories, over the largest value of each.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Difference {
@@ -74,15 +78,16 @@ pub struct Difference {
     pub tangential: f64,
     /// Of the hysteretic force.
     pub hysteretic: f64,
-    /// Whether there is friction.
-    pub friction: bool,
+    /// By how much the hysteretic force counts, 0 to 1.
+    pub weight: f64,
 }
 
 impl Difference {
     /// Of `coarse` from `fine`.
     pub fn between(coarse: &[HistoryRow], fine: &[HistoryRow]) -> Self {
+        let largest = |force: fn(&HistoryRow) -> f64| fine.iter().map(|row| force(row).abs()).fold(0.0, f64::max);
         let of = |force: fn(&HistoryRow) -> f64| {
-            let largest = fine.iter().map(|row| force(row).abs()).fold(0.0, f64::max);
+            let largest = largest(force);
             let off = coarse.iter().map(|row| (force(row) - at(fine, row.time, force)).abs()).fold(0.0, f64::max);
             if off == 0.0 { 0.0 } else { off / largest }
         };
@@ -90,13 +95,16 @@ impl Difference {
             normal: of(|row| row.normal_force),
             tangential: of(|row| row.tangential_force),
             hysteretic: of(|row| row.hysteretic_force),
-            friction: fine.iter().any(|row| row.tangential_force != 0.0),
+            weight: match HYSTERETIC * largest(|row| row.normal_force) {
+                full if full > 0.0 => (largest(|row| row.hysteretic_force) / full).min(1.0),
+                _ => 0.0,
+            },
         }
     }
 
     /// The one number that counts.
     pub fn error(&self) -> f64 {
-        self.normal.max(if self.friction { self.tangential } else { self.hysteretic })
+        self.normal.max(self.tangential).max(self.weight * self.hysteretic)
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::super::progress::terminal;
 use super::super::summary::seconds;
@@ -20,6 +20,8 @@ use crate::scene::sweep::Sweep;
 const LOOK_EVERY: Duration = Duration::from_millis(500);
 /// Lines about running cases come no closer than this where there is no terminal.
 const LINE_EVERY: Duration = Duration::from_secs(10);
+/// The share of the steps that must be done before the time that is left can be told.
+const TELLING: f64 = 0.05;
 
 /// Shown while it lives.
 pub struct Board {
@@ -39,7 +41,28 @@ struct View {
     done_before: usize,
     begun: Instant,
     last_line: Instant,
-    bars: Option<(MultiProgress, BTreeMap<usize, ProgressBar>)>,
+    bars: Option<Bars>,
+}
+
+/// A bar for each case that runs, and below them the one of the whole.
+struct Bars {
+    all: MultiProgress,
+    cases: BTreeMap<usize, ProgressBar>,
+    total: ProgressBar,
+}
+
+impl Bars {
+    fn new(target: ProgressDrawTarget, steps: usize) -> Self {
+        let all = MultiProgress::with_draw_target(target);
+        let total = styled(all.add(ProgressBar::new(steps as u64)));
+        Self { all, cases: BTreeMap::new(), total }
+    }
+
+    /// The bar of a case of so many steps.
+    fn of(&mut self, case: usize, steps: usize) -> &ProgressBar {
+        let made = || styled(self.all.insert_before(&self.total, ProgressBar::new(steps as u64)));
+        self.cases.entry(case).or_insert_with(made)
+    }
 }
 
 impl Board {
@@ -61,7 +84,7 @@ impl Board {
             done_before: steps(&done),
             begun: Instant::now(),
             last_line: Instant::now(),
-            bars: terminal().map(|target| (MultiProgress::with_draw_target(target), BTreeMap::new())),
+            bars: terminal().map(|target| Bars::new(target, steps(chosen))),
         };
         let (stop, stopped) = mpsc::channel();
         let thread = std::thread::Builder::new().name("mpjr sweep".into()).spawn(move || {
@@ -107,9 +130,9 @@ impl View {
         }
         if !last {
             self.show(&running);
-        } else if let Some((all, _)) = &self.bars {
+        } else if let Some(bars) = &self.bars {
             // A terminal that cannot be cleared keeps its lines.
-            let _ = all.clear();
+            let _ = bars.all.clear();
         }
     }
 
@@ -124,12 +147,12 @@ impl View {
             seconds(record.wall_seconds)
         );
         match &mut self.bars {
-            Some((all, bars)) => {
-                if let Some(bar) = bars.remove(&case) {
+            Some(bars) => {
+                if let Some(bar) = bars.cases.remove(&case) {
                     bar.finish_and_clear();
                 }
                 // A terminal that takes no line shows the bars only.
-                let _ = all.println(line);
+                let _ = bars.all.println(line);
             }
             None => tell(line),
         }
@@ -140,12 +163,15 @@ impl View {
         let done = (self.steps - open + running.iter().map(|(_, [done, _])| done).sum::<usize>()).min(self.steps);
         let fresh = done.saturating_sub(self.done_before);
         let elapsed = self.begun.elapsed().as_secs_f64();
-        let left = match fresh {
-            0 => String::new(),
-            _ => format!(", {} left", seconds(elapsed * (self.steps - done) as f64 / fresh as f64)),
+        // Steps are cheap or dear, and setting up and what cases share are no steps: before this much is done, they tell
+        // nothing of the rest.
+        let todo = self.steps - self.done_before;
+        let left = match fresh as f64 >= TELLING * todo as f64 && fresh > 0 {
+            true => format!(", {} left", seconds(elapsed * (self.steps - done) as f64 / fresh as f64)),
+            false => String::new(),
         };
         let total = format!("{} of {} case(s) ended{left}", self.total - self.open.len(), self.total);
-        let Some((all, bars)) = &mut self.bars else {
+        let Some(bars) = &mut self.bars else {
             if self.last_line.elapsed() >= LINE_EVERY {
                 self.last_line = Instant::now();
                 for (case, [done, steps]) in running {
@@ -156,19 +182,19 @@ impl View {
             return;
         };
         for (case, [done, steps]) in running {
-            let bar = bars.entry(*case).or_insert_with(|| styled(all.add(ProgressBar::new(*steps as u64))));
+            let bar = bars.of(*case, *steps);
             bar.set_message(format!("case {case} ({})", self.sweep.label(*case)));
             bar.set_position(*done as u64);
         }
-        let bar = bars.entry(usize::MAX).or_insert_with(|| styled(all.add(ProgressBar::new(self.steps as u64))));
-        bar.set_position(done as u64);
-        bar.set_message(total);
+        bars.total.set_position(done as u64);
+        bars.total.set_message(total);
     }
 }
 
+/// Within any width: what is longer is cut.
 fn styled(bar: ProgressBar) -> ProgressBar {
     // A template that is wrong is a defect that the default one survives.
-    match ProgressStyle::with_template("{bar:30} {pos}/{len}  {msg}") {
+    match ProgressStyle::with_template("{bar:12} {pos}/{len}  {wide_msg}") {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
     }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::super::origin;
 use crate::checksum::checksum;
 use crate::error::{Error, Result};
-use crate::output::left;
+use crate::output::{checkpoint, left, ours};
 use crate::scene::differences;
 use crate::scene::sweep::Sweep;
 
@@ -113,6 +113,29 @@ impl Folder {
         }
     }
 
+    /// Moves the results of a case out of the way that were damaged since they were written, so that it is solved again:
+    /// what this program never wrote stays, and is refused where it would be replaced. What was done, if it was.
+    pub fn set_aside(&self, case: usize) -> Result<Option<String>> {
+        let path = self.results(case);
+        let reason = match left(&path) {
+            Ok(Some(found)) if found.status != "complete" && checkpoint::beside(&path).exists() => {
+                origin::is_intact(&path).err()
+            }
+            Ok(_) => None,
+            Err(error) => Some(error),
+        };
+        let written_before = || {
+            let solved = |record: Record| record.exit != Error::file(&path, "").exit_code();
+            std::fs::metadata(&path).is_ok_and(|about| about.len() == 0) || self.record(case).is_some_and(solved)
+        };
+        let Some(Error::File { reason, .. }) = reason.filter(|_| written_before()) else { return Ok(None) };
+        let numbered = |n: usize| path.with_extension(if n == 1 { "damaged".into() } else { format!("damaged-{n}") });
+        let Some(aside) = (1..).map(numbered).find(|aside| !aside.exists()) else { return Ok(None) };
+        std::fs::rename(&path, &aside).map_err(|error| Error::file(&path, error))?;
+        let aside = aside.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Some(format!("{}: {reason}; moved to {aside}, and case {case} is solved again", path.display())))
+    }
+
     /// How the last attempt at a case ended; none when there was none.
     pub fn record(&self, case: usize) -> Option<Record> {
         toml::from_str(&std::fs::read_to_string(self.record_file(case)).ok()?).ok()
@@ -140,7 +163,7 @@ impl Folder {
 
 /// Writes a file beside and renames it, so that readers see the old one or the new one.
 pub fn replace(path: &Path, text: &str) -> Result<()> {
-    let scratch = path.with_extension(format!("{}.part", std::process::id()));
+    let scratch = ours::scratch(path);
     let outcome = std::fs::write(&scratch, text).and_then(|()| std::fs::rename(&scratch, path));
     if outcome.is_err() {
         // The error at hand says more than one about a leftover.

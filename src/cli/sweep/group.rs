@@ -11,6 +11,7 @@ use super::super::case::{self, Job};
 use super::super::interrupt::Interrupt;
 use super::super::origin::{self, Origin};
 use super::super::progress::Progress;
+use super::super::terminal::warn;
 use super::claim::Claim;
 use super::folder::Record;
 use super::tasks::{Next, Tasks};
@@ -143,10 +144,16 @@ impl Group {
     ) -> Result<()> {
         let begun = Instant::now();
         let (scene, out) = (&tasks.sweep.cases[case].scene, tasks.folder.results(case));
+        let aside = if self.comm.rank() == 0 { tasks.folder.set_aside(case) } else { Ok(None) };
+        if let Some(text) = agree(&self.comm, aside)? {
+            warn(text);
+        }
         // What a run that was stopped left; anything else is begun anew.
         let can_resume =
             self.comm.rank() == 0 && matches!(origin::is_complete(&out, scene, &tasks.sweep.file), Ok(false));
-        let origin = match from.and_then(|from| tasks.shared(from)) {
+        let shared = from.and_then(|from| tasks.shared(from));
+        let damaged = self.comm.rank() == 0 && shared.is_some_and(|shared| origin::is_intact(&shared.results).is_err());
+        let origin = match shared.filter(|_| !any(&self.comm, damaged)) {
             _ if any(&self.comm, can_resume) => Origin::Checkpoint,
             Some(shared) => Origin::Shared { results: &shared.results, phases: shared.phases },
             None => Origin::Rest,

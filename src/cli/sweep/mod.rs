@@ -63,7 +63,8 @@ pub fn run(arguments: &SweepArguments) -> Result<()> {
     if arguments.list || arguments.slurm {
         return print(arguments);
     }
-    super::in_session(&arguments.petsc, |session, world| solve((session, world), &Interrupt::watch()?, arguments))
+    let interrupt = Interrupt::watch()?;
+    super::in_session(&arguments.petsc, |session, world| solve((session, world), &interrupt, arguments))
 }
 
 /// What needs no solver.
@@ -94,7 +95,11 @@ fn solve(
     let begun = Instant::now();
     let sweep = sweep::receive(&share_text(world, || read(&arguments.sweep))?)?;
     let out = directory(arguments);
-    let made = if world.rank() == 0 { Folder::make(&out) } else { Ok(Folder::at(&out)) };
+    let made = if world.rank() == 0 {
+        summary::may_write(&out).and_then(|()| Folder::make(&out))
+    } else {
+        Ok(Folder::at(&out))
+    };
     let folder = agree(world, made)?;
     let chosen: Vec<usize> = match arguments.case {
         Some(case) if case < sweep.cases.len() => vec![case],
@@ -137,11 +142,12 @@ const NAMED: usize = 3;
 
 /// Prints how many cases are done; an error when one failed or is missing.
 fn tell((sweep, folder): (&Sweep, &Folder), chosen: &[usize], begun: Instant, stopped: bool) -> Result<()> {
-    let (mut complete, mut failed) = (0, Vec::new());
+    let (mut complete, mut failed, mut first_exit) = (0, Vec::new(), None);
     for &index in chosen {
         match folder.state(sweep, index) {
             folder::State::Complete => complete += 1,
             folder::State::Failed(record) => {
+                first_exit.get_or_insert(record.exit);
                 failed.push(format!("case {index} (exit code {}): {}", record.exit, record.reason))
             }
             _ => {}
@@ -158,7 +164,14 @@ fn tell((sweep, folder): (&Sweep, &Folder), chosen: &[usize], begun: Instant, st
         return Ok(());
     }
     let named = failed.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join("; ");
-    Err(Error::Solver(format!("{} of {total} case(s) failed: {named}", failed.len())))
+    let text = format!("{} of {total} case(s) failed: {named}", failed.len());
+    // The code is that of the first of them.
+    Err(match first_exit {
+        Some(2) => Error::Usage(text),
+        Some(4) => Error::file(folder.path(), text),
+        Some(1) => Error::Mismatch(text),
+        _ => Error::Solver(text),
+    })
 }
 
 fn read(file: &Path) -> Result<String> {

@@ -1,8 +1,10 @@
 //! `summary.csv`: one row per case, with its varied values and final figures.
 
+use std::path::Path;
+
 use super::folder::{Folder, State, replace};
 use crate::error::Result;
-use crate::output::reader::Results;
+use crate::output::{ours, reader::Results};
 use crate::scene::sweep::Sweep;
 
 /// The columns of the history of which the last value is given, with `energy/` ones where a run has them.
@@ -26,10 +28,21 @@ const FIGURES: [&str; 17] = [
     "energy/imbalance",
 ];
 
+const FILE: &str = "summary.csv";
+/// What stands before the keys of the sweep and after them.
+const BEFORE: &str = "case";
+const AFTER: [&str; 4] = ["status", "exit_code", "reason", "wall_seconds"];
+
+/// Refuses a directory with a table of this name that no sweep wrote.
+pub fn may_write(directory: &Path) -> Result<()> {
+    let ours = |header: &str| header.starts_with(BEFORE) && header.contains(&AFTER.join(","));
+    ours::make_way_for_table(&directory.join(FILE), ours)
+}
+
 /// Writes the file anew from what is in the directory.
 pub fn write(sweep: &Sweep, folder: &Folder) -> Result<()> {
-    let before = ["case"].into_iter().chain(sweep.keys.iter().map(String::as_str));
-    let after = ["status", "exit_code", "reason", "wall_seconds"].into_iter().chain(FIGURES);
+    let before = [BEFORE].into_iter().chain(sweep.keys.iter().map(String::as_str));
+    let after = AFTER.into_iter().chain(FIGURES);
     let mut text = line(before.chain(after).map(str::to_owned));
     for (index, case) in sweep.cases.iter().enumerate() {
         let state = folder.state(sweep, index);
@@ -55,7 +68,7 @@ pub fn write(sweep: &Sweep, folder: &Folder) -> Result<()> {
         let cells = cells.chain([state.word().to_owned(), exit, reason, wall]).chain(FIGURES.map(figure));
         text.push_str(&line(cells));
     }
-    replace(&folder.path().join("summary.csv"), &text)
+    replace(&folder.path().join(FILE), &text)
 }
 
 /// A line of a table separated by commas (RFC 4180).

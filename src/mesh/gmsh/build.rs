@@ -1,14 +1,14 @@
 //! From what a file holds to a mesh: the plane, the cells, their regions.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use nalgebra::Vector2;
 
 use super::boundary::{Edges, Outline};
-use super::{Contents, Element, Flaw, Kind, Outcome, Role};
+use super::{Contents, Element, Flaw, Kind, Outcome, Role, called};
 use crate::mesh::{Cell, Mesh};
 
-/// What the named groups of a file are to the mesh.
+/// What the physical groups of a file, by their names or numbers, are to the mesh.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Roles {
     /// Physical curve: the contact face.
@@ -28,6 +28,9 @@ pub struct Roles {
 /// [`Flaw`] where a name is missing, a cell is degenerate or lies over its neighbour, the body is in pieces or the
 /// contact face is not one line with the body below it.
 pub fn build(contents: &Contents, roles: &Roles) -> Outcome<Mesh> {
+    if contents.elements.iter().all(|element| contents.groups[element.group].is_empty()) {
+        return Err(Flaw::File(NO_GROUPS.to_owned()));
+    }
     let (nodes, index, cells) = cells(contents)?;
     let mut list = Vec::with_capacity(cells.len());
     for (element, _) in &cells {
@@ -40,9 +43,18 @@ pub fn build(contents: &Contents, roles: &Roles) -> Outcome<Mesh> {
     let outline = Outline { contents, nodes: &nodes, index: &index, edges: &edges };
     let face = outline.face(&roles.contact)?;
     let held = outline.held(&roles.fixed, &roles.roller)?;
+    if face.unknown.iter().all(|&node| held[node as usize] == [true; 2]) {
+        let at_fault = roles.fixed.len() - 1;
+        let reason = "holds every node of the contact face; leave some of it free to be pressed in";
+        return Err(Flaw::Unfit(Role::Fixed(at_fault), reason.to_owned()));
+    }
     let unknown = (0..nodes.len() as u32).collect();
     Ok(Mesh { nodes, cells: list, regions, unknown, held, face })
 }
+
+const NO_GROUPS: &str = "no element is in a physical group: give the geometry Physical Curves and mesh again; format 2.2 \
+                         also loses all groups when everything is saved (-save_all, Mesh.SaveAll = 1): save without \
+                         that, or as 4.1 (gmsh -format msh41)";
 
 /// A cell and the groups it is in.
 type Member<'a> = (&'a Element, Vec<i64>);
@@ -152,8 +164,8 @@ fn regions(contents: &Contents, cells: &[Member], names: &[String]) -> Outcome<V
                 format!("element {} is in {:?} and in {:?}; make them disjoint", element.tag, names[one], names[other]),
             )),
             (None, _) => {
-                let group = contents.names.iter().find(|(dimension, tag, _)| *dimension == 2 && groups.contains(tag));
-                let whose = group.map_or("no physical surface".to_owned(), |(_, _, name)| format!("{name:?}"));
+                let group = contents.known(2).into_iter().find(|(tag, _)| groups.contains(tag));
+                let whose = group.map_or("no physical surface".to_owned(), |(tag, name)| called(tag, name.as_deref()));
                 let reason = format!("element {} is in {whose}, which no material fills", element.tag);
                 Err(Flaw::Unfit(Role::Region(0), reason))
             }
@@ -163,12 +175,27 @@ fn regions(contents: &Contents, cells: &[Member], names: &[String]) -> Outcome<V
 }
 
 impl Contents {
-    /// The number of the physical group of this name.
+    /// The number of the physical group of this name, or else of the one that the name is the number of.
     pub(super) fn group(&self, dimension: usize, name: &str, role: Role) -> Outcome<i64> {
-        let of_dimension = || self.names.iter().filter(|(other, _, _)| *other == dimension);
-        match of_dimension().find(|(_, _, other)| other == name) {
-            Some((_, tag, _)) => Ok(*tag),
-            None => Err(Flaw::Unknown(role, of_dimension().map(|(_, _, name)| name.clone()).collect())),
+        let named = self.names.iter().find(|(other, _, known)| *other == dimension && known == name);
+        if let Some((_, tag, _)) = named {
+            return Ok(*tag);
         }
+        let known = self.known(dimension);
+        match name.parse() {
+            Ok(tag) if known.iter().any(|(other, _)| *other == tag) => Ok(tag),
+            _ => Err(Flaw::Unknown(role, known)),
+        }
+    }
+
+    /// The physical groups of a dimension, in order of their numbers, with their names where they have such.
+    fn known(&self, dimension: usize) -> Vec<(i64, Option<String>)> {
+        let mut known: BTreeMap<i64, Option<String>> = BTreeMap::new();
+        for element in self.elements.iter().filter(|element| element.kind.dimension() == dimension) {
+            known.extend(self.groups[element.group].iter().map(|&tag| (tag, None)));
+        }
+        let of_dimension = self.names.iter().filter(|(other, _, _)| *other == dimension);
+        known.extend(of_dimension.map(|(_, tag, name)| (*tag, Some(name.clone()))));
+        known.into_iter().collect()
     }
 }

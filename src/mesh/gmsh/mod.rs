@@ -1,13 +1,12 @@
-//! Gmsh .msh files, versions 2.2 and 4.1 in ASCII, as meshes.
+//! Gmsh .msh files, versions 2.0 to 2.2 and 4.1, text or binary, as meshes.
 //!
 //! Gmsh reference manual, "MSH file format" (4.1) and "MSH file format version 2 (Legacy)" (2.2). What the file must
-//! hold: first-order triangles and quadrilaterals in a plane, and named physical curves of which one is the contact
-//! face. Files are read on one rank and parsed on all.
+//! hold: first-order triangles and quadrilaterals in a plane, and physical curves of which one is the contact face. Files are read on one rank and parsed on all.
 
 mod boundary;
 mod build;
+mod input;
 mod read;
-mod text;
 mod v2;
 mod v4;
 
@@ -67,6 +66,10 @@ impl Kind {
             Self::Quadrilateral => 4,
         }
     }
+
+    fn dimension(self) -> usize {
+        if self == Self::Line { 1 } else { 2 }
+    }
 }
 
 /// What is wrong with a file, or with what it is asked for.
@@ -74,8 +77,8 @@ impl Kind {
 pub enum Flaw {
     /// In the file; the text says the line or the element.
     File(String),
-    /// No physical group of this name; the file's names of that dimension.
-    Unknown(Role, Vec<String>),
+    /// No physical group of this name; the numbers and names of the file's groups of that dimension.
+    Unknown(Role, Vec<(i64, Option<String>)>),
     /// A physical group that cannot be what it is asked to be.
     Unfit(Role, String),
 }
@@ -91,6 +94,11 @@ pub enum Role {
     Roller(usize),
     /// The i-th region.
     Region(usize),
+}
+
+/// A physical group for a message: `"contact" (3)`, or its number alone.
+pub fn called(tag: i64, name: Option<&str>) -> String {
+    name.map_or(tag.to_string(), |name| format!("{name:?} ({tag})"))
 }
 
 type Outcome<T> = std::result::Result<T, Flaw>;

@@ -1,127 +1,133 @@
 //! A .msh file as it stands: the sections, whatever the version.
 
-use super::text::Words;
+use super::input::{Form, Input, short};
 use super::{Contents, Element, Flaw, Kind, Outcome, v2, v4};
 
 /// Reads a file.
 ///
 /// # Errors
-/// [`Flaw::File`] with the line where it is not a .msh file of version 2.2 or 4.1 in ASCII, or holds elements other
-/// than points, lines, triangles and quadrilaterals of first order.
+/// [`Flaw::File`] with the line (or the byte) where it is not a .msh file of version 2.0 to 2.2 or 4.1, or holds elements
+/// other than points, lines, triangles and quadrilaterals of first order.
 pub fn read(bytes: &[u8]) -> Outcome<Contents> {
-    // The header of a binary file is text.
-    let header = bytes.split(|&byte| byte == b'\n').take(2).collect::<Vec<_>>().join(&b' ');
-    let header = String::from_utf8_lossy(&header);
-    let mut words = header.split_whitespace();
-    let format = (words.next(), words.next(), words.next());
-    let read = match format {
-        (Some("$MeshFormat"), Some("2.2" | "4.1"), Some("1")) => Err(BINARY.to_owned()),
-        (Some("$MeshFormat"), Some(version @ ("2.2" | "4.1")), Some("0")) => match std::str::from_utf8(bytes) {
-            Ok(text) => sections(text, version == "2.2"),
-            Err(_) => Err(BINARY.to_owned()),
-        },
-        (Some("$MeshFormat"), Some(version), _) => Err(format!(
-            "line 2: is of version {:?}; save it as 4.1 or 2.2 (gmsh -format msh41)",
-            version.chars().take(20).collect::<String>()
-        )),
-        _ => Err("line 1: is not a Gmsh .msh file, which begins with $MeshFormat".to_owned()),
-    };
-    read.map_err(Flaw::File)
+    sections(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)).map_err(Flaw::File)
 }
 
-const BINARY: &str = "is binary; save it as text (gmsh -bin 0, or Mesh.Binary = 0)";
+const NOT_GMSH: &str = "is not a Gmsh .msh file, which has $MeshFormat before its mesh";
 
-fn sections(text: &str, legacy: bool) -> Result<Contents, String> {
-    let mut words = Words::new(text);
+fn sections(bytes: &[u8]) -> Result<Contents, String> {
+    let mut input = Input::new(bytes);
     let mut contents = Contents::default();
     let mut entities = v4::Entities::default();
+    let mut legacy = None;
     let (mut nodes, mut elements) = (false, false);
-    while let Some(word) = words.word() {
-        let Some(section) = word.strip_prefix('$') else {
-            return Err(words.error("must be the beginning of a section, such as $Nodes"));
+    while let Some(word) = input.word() {
+        let Some(section) = word.strip_prefix(b"$").and_then(|name| std::str::from_utf8(name).ok()) else {
+            return Err(match legacy {
+                None => format!("line 1: {NOT_GMSH}"),
+                Some(_) => {
+                    input.error(format!("must be the beginning of a section, such as $Nodes, got {:?}", short(word)))
+                }
+            });
         };
-        match section {
-            "PhysicalNames" => physical_names(&mut words, &mut contents)?,
-            "Entities" if !legacy => entities = v4::Entities::read(&mut words, &mut contents)?,
-            "PartitionedEntities" => return Err(words.error("is partitioned; save it whole: ranks share it out")),
-            "Nodes" if legacy => v2::nodes(&mut words, &mut contents)?,
-            "Nodes" => v4::nodes(&mut words, &mut contents)?,
-            "Elements" if legacy => v2::elements(&mut words, &mut contents)?,
-            "Elements" => v4::elements(&mut words, &mut contents, &entities)?,
-            other => {
-                words.skip_section(other)?;
+        match (section, legacy) {
+            ("MeshFormat", _) => legacy = Some(format(&mut input)?),
+            ("PhysicalNames", _) => physical_names(&mut input, &mut contents)?,
+            ("Entities", Some(false)) => entities = v4::Entities::read(&mut input, &mut contents)?,
+            ("PartitionedEntities", _) => return Err(input.error("is partitioned; save it whole: ranks share it out")),
+            ("Nodes" | "Elements", None) => return Err(input.error(NOT_GMSH)),
+            ("Nodes", Some(true)) => v2::nodes(&mut input, &mut contents)?,
+            ("Nodes", Some(false)) => v4::nodes(&mut input, &mut contents)?,
+            ("Elements", Some(true)) => v2::elements(&mut input, &mut contents)?,
+            ("Elements", Some(false)) => v4::elements(&mut input, &mut contents, &entities)?,
+            (other, _) => {
+                input.skip_section(other)?;
                 continue;
             }
         }
         nodes |= section == "Nodes";
         elements |= section == "Elements";
-        words.end_section(section)?;
+        input.end_section(section)?;
     }
-    match (nodes, elements) {
-        (true, true) => Ok(contents),
-        (false, _) => Err("has no $Nodes".to_owned()),
+    match (legacy, nodes, elements) {
+        (None, _, _) => Err(format!("line 1: {NOT_GMSH}")),
+        (_, true, true) => Ok(contents),
+        (_, false, _) => Err("has no $Nodes".to_owned()),
         _ => Err("has no $Elements".to_owned()),
     }
 }
 
-/// `dimension number "name"` for each.
-fn physical_names(words: &mut Words, contents: &mut Contents) -> Result<(), String> {
-    let count: usize = words.number("the number of physical names")?;
-    for _ in 0..count {
-        let dimension = words.number("the dimension of a physical group")?;
-        let tag = words.number("the number of a physical group")?;
-        let name = words.rest_of_line();
-        match name.strip_prefix('"').and_then(|name| name.strip_suffix('"')) {
-            Some(name) => contents.names.push((dimension, tag, name.to_owned())),
-            None => return Err(words.error("must be a name in double quotes")),
-        }
-    }
-    Ok(())
-}
-
-/// Adds an element of Gmsh's `number` whose nodes come next.
-pub(super) fn element(
-    words: &mut Words,
-    contents: &mut Contents,
-    number: u32,
-    head: (u64, usize),
-) -> Result<(), String> {
-    let (tag, group) = head;
-    let kind = match number {
-        1 => Kind::Line,
-        2 => Kind::Triangle,
-        3 => Kind::Quadrilateral,
-        15 => return words.number::<u64>("the number of a node").map(|_| ()),
-        8..=10 | 16 | 20..=28 => {
-            return Err(words
-                .error(format!("element {tag} is of second or higher order; mesh with first order (gmsh -order 1)")));
-        }
-        4..=7 | 11..=14 | 17..=19 | 29..=31 => {
-            return Err(words.error(format!(
-                "element {tag} is three-dimensional; mesh in two dimensions (gmsh -2) and save no volume"
-            )));
-        }
+/// `version type size` and, in binary, the integer 1, which tells the order of bytes; whether the version is 2.
+fn format(input: &mut Input) -> Result<bool, String> {
+    let version = input.word().unwrap_or_default();
+    // 2.0 and 2.1 differ from 2.2 in what tags an element may have beyond the first two, which are passed over.
+    let legacy = match version {
+        b"2" | b"2.0" | b"2.1" | b"2.2" => true,
+        b"4.1" => false,
         _ => {
-            let what = "only lines, triangles and quadrilaterals are read";
-            return Err(words.error(format!("element {tag} is of Gmsh's type {number}; {what}")));
+            let version = short(version);
+            return Err(input.error(format!("is of version {version:?}; save it as 4.1 or 2.2 (gmsh -format msh41)")));
         }
     };
-    let mut nodes = [0; 4];
-    for node in &mut nodes[..kind.nodes()] {
-        *node = words.number("the number of a node")?;
+    let (binary, size): (u8, usize) = (input.written("0 or 1, whether binary")?, input.written("the size of a real")?);
+    if binary == 0 {
+        return Ok(legacy);
     }
-    contents.elements.push(Element { tag, kind, nodes, group });
+    if size != 8 {
+        return Err(input.error(format!("has numbers of {size} bytes; only 8 are read")));
+    }
+    input.next_line();
+    input.set_form(Form::LittleEndian);
+    match input.int("the integer 1")? {
+        1 => {}
+        one if one == i64::from(1_i32.swap_bytes()) => input.set_form(Form::BigEndian),
+        other => return Err(input.error(format!("must be the integer 1 in 4 bytes, got {other}"))),
+    }
+    Ok(legacy)
+}
+
+/// `dimension number "name"` for each, as text in every file; a name of one word may stand without quotes.
+fn physical_names(input: &mut Input, contents: &mut Contents) -> Result<(), String> {
+    let count: usize = input.written("the number of physical names")?;
+    for _ in 0..count {
+        let dimension = input.written("the dimension of a physical group")?;
+        let tag = input.written("the number of a physical group")?;
+        let name = input.rest_of_line();
+        let quoted = name.strip_prefix('"').and_then(|name| name.strip_suffix('"'));
+        let word = (!name.is_empty() && !name.contains(['"', ' ', '\t'])).then_some(name.as_str());
+        match quoted.or(word) {
+            Some(name) => contents.names.push((dimension, tag, name.to_owned())),
+            None => return Err(input.error("must be a name in double quotes")),
+        }
+    }
     Ok(())
 }
 
-/// A coordinate, which must be finite.
-pub(super) fn place(words: &mut Words) -> Result<[f64; 3], String> {
-    let mut place = [0.0_f64; 3];
-    for coordinate in &mut place {
-        *coordinate = words.number("a coordinate")?;
-        if !coordinate.is_finite() {
-            return Err(words.error("a coordinate must be finite"));
+/// What an element of Gmsh's `number` is; none for a point.
+pub(super) fn kind(input: &Input, number: i64, tag: u64) -> Result<Option<Kind>, String> {
+    let what = match number {
+        1 => return Ok(Some(Kind::Line)),
+        2 => return Ok(Some(Kind::Triangle)),
+        3 => return Ok(Some(Kind::Quadrilateral)),
+        15 => return Ok(None),
+        8..=10 | 16 | 20..=28 => "is of second or higher order; mesh with first order (gmsh -order 1)".to_owned(),
+        4..=7 | 11..=14 | 17..=19 | 29..=31 => {
+            "is three-dimensional; mesh in two dimensions (gmsh -2) and save no volume".to_owned()
         }
+        _ => format!("is of Gmsh's type {number}; only lines, triangles and quadrilaterals are read"),
+    };
+    Err(input.error(format!("element {tag} {what}")))
+}
+
+/// Adds an element whose nodes are read by `node`.
+pub(super) fn element(
+    contents: &mut Contents,
+    (kind, tag, group): (Option<Kind>, u64, usize),
+    mut node: impl FnMut() -> Result<u64, String>,
+) -> Result<(), String> {
+    let mut nodes = [0; 4];
+    for place in &mut nodes[..kind.map_or(1, Kind::nodes)] {
+        *place = node()?;
     }
-    Ok(place)
+    contents.elements.extend(kind.map(|kind| Element { tag, kind, nodes, group }));
+    Ok(())
 }

@@ -98,6 +98,183 @@ fn both_versions_give_the_same_mesh() {
     }
 }
 
+/// Versions 2, 2.0 and 2.1 have the layout of 2.2; comments and a byte order mark may stand before the format, names of
+/// one word without quotes.
+#[test]
+fn what_other_programs_write_is_read_as_well() {
+    let legacy = LEGACY.replace("$Elements\n11", "$Elements\n12");
+    let expected = build(&read(legacy.as_bytes()).unwrap(), &roles()).unwrap();
+    for version in ["2", "2.0", "2.1"] {
+        let older = legacy.replacen("2.2 0 8", &format!("{version} 0 8"), 1);
+        assert_eq!(build(&read(older.as_bytes()).unwrap(), &roles()).unwrap(), expected);
+    }
+    for other in [
+        format!("\u{feff}{legacy}"),
+        format!("$Comments\nmade by hand\n$EndComments\n{legacy}"),
+        legacy.replace('\n', "\r\n"),
+        legacy.replace("\"contact\"", "contact").replace("\"left\"", "left"),
+    ] {
+        assert_eq!(build(&read(other.as_bytes()).unwrap(), &roles()).unwrap(), expected, "{other}");
+    }
+    let unnamed = legacy.replace("1 1 \"contact\"", "1 1 contact face");
+    assert_eq!(read(unnamed.as_bytes()), Err(Flaw::File("line 9: must be a name in double quotes".into())));
+}
+
+/// A group is found by its name or by its number, names first; the error has both.
+#[test]
+fn groups_have_numbers() {
+    let legacy = LEGACY.replace("$Elements\n11", "$Elements\n12");
+    let start = legacy.find("$PhysicalNames").unwrap()..legacy.find("$Nodes").unwrap();
+    let mut unnamed = legacy.clone();
+    unnamed.replace_range(start, "");
+    let text = |name: &str| name.to_owned();
+    let numbers = Roles {
+        contact: text("1"),
+        fixed: vec![text("2")],
+        roller: vec![text("7")],
+        regions: vec![text("3"), text("4")],
+    };
+    let expected = build(&read(legacy.as_bytes()).unwrap(), &roles()).unwrap();
+    for file in [&unnamed, &legacy] {
+        assert_eq!(build(&read(file.as_bytes()).unwrap(), &numbers).unwrap(), expected);
+    }
+    // A curve that is called "7" goes before the curve number 7.
+    let misleading = legacy.replace("\"contact\"", "\"7\"").replace("\"left\"", "\"contact\"");
+    let named = Roles { contact: text("7"), roller: vec![text("contact")], ..roles() };
+    assert_eq!(build(&read(misleading.as_bytes()).unwrap(), &named).unwrap(), expected);
+
+    let partly = legacy.replace("$PhysicalNames\n5", "$PhysicalNames\n4").replace("1 7 \"left\"\n", "");
+    let wrong = Roles { contact: text("top"), ..roles() };
+    let known = vec![(1, Some(text("contact"))), (2, Some(text("base of it"))), (7, None)];
+    assert_eq!(build(&read(partly.as_bytes()).unwrap(), &wrong), Err(Flaw::Unknown(Role::Contact, known)));
+}
+
+/// Gmsh writes no groups into version 2.2 when it saves everything.
+#[test]
+fn a_file_that_lost_its_groups_is_explained() {
+    let mut lost = String::new();
+    for line in LEGACY.replace("$Elements\n11", "$Elements\n12").lines() {
+        let words: Vec<&str> = line.split(' ').collect();
+        lost += &match words[..] {
+            [number, kind, "2", _, ref rest @ ..] if rest.len() > 1 => {
+                format!("{number} {kind} 2 0 {}\n", rest.join(" "))
+            }
+            _ => format!("{line}\n"),
+        };
+    }
+    let Err(Flaw::File(reason)) = build(&read(lost.as_bytes()).unwrap(), &roles()) else { panic!("{lost}") };
+    assert!(reason.contains("-save_all"), "{reason}");
+}
+
+/// Files by Gmsh 4.15 of a square of 1 m with the curves "contact" (1) and 3 and the surface "body" (7): version 2.2 and
+/// 4.1 in binary, little-endian as they are and with every number turned round, against its text.
+#[test]
+fn binary_files_give_the_same_mesh() {
+    const TEXT: &[u8] = include_bytes!("../../../tests/scenes/data/gmsh-text-4.1.msh");
+    const LEGACY: &[u8] = include_bytes!("../../../tests/scenes/data/gmsh-binary-2.2.msh");
+    const MODERN: &[u8] = include_bytes!("../../../tests/scenes/data/gmsh-binary-4.1.msh");
+
+    let roles = Roles { contact: "contact".into(), fixed: vec!["3".into()], regions: vec!["body".into()], ..roles() };
+    let roles = Roles { roller: Vec::new(), ..roles };
+    let expected = build(&read(TEXT).unwrap(), &roles).unwrap();
+    assert_eq!((expected.cells.len(), expected.face.x.len()), (14, 3));
+    for file in [LEGACY.to_vec(), MODERN.to_vec(), turned_2(LEGACY), turned_4(MODERN)] {
+        let mesh = build(&read(&file).unwrap(), &roles).unwrap();
+        assert_eq!(mesh.cells, expected.cells);
+        // Text has fewer digits.
+        let off = mesh.nodes.iter().zip(&expected.nodes).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(off < 1e-15, "{off}");
+        assert_eq!((&mesh.held, &mesh.face.unknown), (&expected.held, &expected.face.unknown));
+        // Cut short anywhere, it is refused or, where only an end is missing, read.
+        for length in 0..file.len() {
+            if let Err(flaw) = read(&file[..length]) {
+                assert!(matches!(&flaw, Flaw::File(reason) if !reason.contains('\n')), "{flaw:?}");
+            }
+        }
+    }
+}
+
+/// Copies bytes, turning numbers round.
+struct Turning<'a> {
+    from: &'a [u8],
+    to: Vec<u8>,
+}
+
+impl Turning<'_> {
+    fn text_until(&mut self, mark: &str) {
+        let end = self.from.windows(mark.len()).position(|window| window == mark.as_bytes()).unwrap() + mark.len();
+        self.to.extend(&self.from[..end]);
+        self.from = &self.from[end..];
+    }
+
+    fn turn<const N: usize>(&mut self) -> u64 {
+        let (number, rest) = self.from.split_at(N);
+        self.to.extend(number.iter().rev());
+        self.from = rest;
+        number.iter().rev().fold(0, |value, byte| value << 8 | u64::from(*byte))
+    }
+
+    fn done(mut self) -> Vec<u8> {
+        self.to.extend(self.from);
+        self.to
+    }
+}
+
+/// A little-endian file of version 2.2 as a big-endian machine would write it.
+fn turned_2(file: &[u8]) -> Vec<u8> {
+    let mut turning = Turning { from: file, to: Vec::new() };
+    turning.text_until("2.2 1 8\n");
+    turning.turn::<4>();
+    turning.text_until("$Nodes\n12\n");
+    for _ in 0..12 {
+        turning.turn::<4>();
+        (0..3).for_each(|_| _ = turning.turn::<8>());
+    }
+    turning.text_until("$Elements\n18\n");
+    let mut left = 18;
+    while left > 0 {
+        let (kind, count, tags) = (turning.turn::<4>(), turning.turn::<4>(), turning.turn::<4>());
+        let nodes = if kind == 1 { 2 } else { 3 };
+        (0..count * (1 + tags + nodes)).for_each(|_| _ = turning.turn::<4>());
+        left -= count;
+    }
+    turning.done()
+}
+
+/// The same of version 4.1.
+fn turned_4(file: &[u8]) -> Vec<u8> {
+    let mut turning = Turning { from: file, to: Vec::new() };
+    turning.text_until("4.1 1 8\n");
+    turning.turn::<4>();
+    turning.text_until("$Entities\n");
+    let counts = [0; 4].map(|_| turning.turn::<8>());
+    for (dimension, count) in counts.into_iter().enumerate() {
+        for _ in 0..count {
+            turning.turn::<4>();
+            (0..if dimension == 0 { 3 } else { 6 }).for_each(|_| _ = turning.turn::<8>());
+            for _ in 0..if dimension == 0 { 1 } else { 2 } {
+                let tags = turning.turn::<8>();
+                (0..tags).for_each(|_| _ = turning.turn::<4>());
+            }
+        }
+    }
+    turning.text_until("$Nodes\n");
+    let [blocks, ..] = [0; 4].map(|_| turning.turn::<8>());
+    for _ in 0..blocks {
+        (0..3).for_each(|_| _ = turning.turn::<4>());
+        let count = turning.turn::<8>();
+        (0..4 * count).for_each(|_| _ = turning.turn::<8>());
+    }
+    turning.text_until("$Elements\n");
+    let [blocks, ..] = [0; 4].map(|_| turning.turn::<8>());
+    for _ in 0..blocks {
+        let [_, _, kind] = [0; 3].map(|_| turning.turn::<4>());
+        let count = turning.turn::<8>();
+        (0..count * if kind == 1 { 3 } else { 4 }).for_each(|_| _ = turning.turn::<8>());
+    }
+    turning.done()
+}
+
 /// A file drawn in x and z.
 #[test]
 fn the_plane_may_be_upright() {

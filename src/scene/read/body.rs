@@ -5,7 +5,7 @@ use std::path::Path;
 use super::material;
 use crate::error::Result;
 use crate::rheology::Loading;
-use crate::scene::keys::{Quantity, Section};
+use crate::scene::keys::{Quantity, Section, label};
 use crate::scene::{Body, Element, Layer, Material, MeshFile, Sides};
 
 const ELEMENTS: [(&str, Element); 2] = [("q4", Element::Quad4), ("q4_bbar", Element::Quad4Bbar)];
@@ -45,20 +45,21 @@ fn layer(section: &Section) -> Result<Layer> {
 
 fn mesh(section: &Section, scene: &Path) -> Result<MeshFile> {
     const FILE: &str = "the path of a Gmsh .msh file, relative to the scene";
-    const CONTACT: &str = "the name of the physical curve that is the contact face";
+    const CONTACT: &str = "the name or number of the physical curve that is the contact face";
 
     section.later(&[("sides", "name the curves that are held: fixed, roller")])?;
     section.only(&["file", "contact", "fixed", "roller", "element"])?;
-    let text = |key, what| section.optional_text(key, what)?.ok_or_else(|| section.missing(key, what));
-    let relative = text("file", FILE)?;
+    let relative = section.optional_text("file", FILE)?.ok_or_else(|| section.missing("file", FILE))?;
     let joined = scene.parent().unwrap_or(Path::new("")).join(relative);
     // Only an empty path has no absolute form, or a directory that is gone.
     let file =
         std::path::absolute(&joined).map_err(|error| section.error("file", format!("must be {FILE}: {error}")))?;
-    let (contact, fixed) = (text("contact", CONTACT)?, names(section, "fixed")?);
+    let contact = section.optional_label("contact", CONTACT)?.ok_or_else(|| section.missing("contact", CONTACT))?;
+    let fixed = names(section, "fixed")?;
     if fixed.is_empty() {
         let wrong = if section.has("fixed") { "empty" } else { "missing" };
-        let reason = format!("{wrong}; give the names of the physical curves that are held, so that the body stays");
+        let reason =
+            format!("{wrong}; give the names or numbers of the physical curves that are held, so that the body stays");
         return Err(section.error("fixed", reason));
     }
     Ok(MeshFile { file, contact, fixed, roller: names(section, "roller")?, element: element(section)? })
@@ -68,19 +69,19 @@ fn element(section: &Section) -> Result<Element> {
     Ok(section.optional_choice("element", &ELEMENTS, &[])?.unwrap_or(Element::Quad4))
 }
 
-/// An array of names of physical curves, each once; empty when absent.
+/// An array of names or numbers of physical curves, each once; empty when absent.
 fn names(section: &Section, key: &str) -> Result<Vec<String>> {
-    const WHAT: &str = "an array of names of physical curves";
+    const WHAT: &str = "an array of names or numbers of physical curves";
 
     let mut names: Vec<String> = Vec::new();
     for (index, value) in section.values(key, WHAT)?.iter().enumerate() {
         let at = format!("{key}.{index}");
-        match value.as_str() {
-            Some(name) if names.iter().any(|before| before == name) => {
+        match value.as_str().map(str::to_owned).or_else(|| label(value)) {
+            Some(name) if names.contains(&name) => {
                 return Err(section.error(&at, format!("{name:?} is in the list already")));
             }
-            Some(name) => names.push(name.to_owned()),
-            None => return Err(section.must_be(&at, "the name of a physical curve", value)),
+            Some(name) => names.push(name),
+            None => return Err(section.must_be(&at, "the name or number of a physical curve", value)),
         }
     }
     Ok(names)
@@ -94,7 +95,7 @@ pub(super) fn materials(root: &Section, body: &Body, loading: Option<&Loading>) 
     let count = sections.len();
     let mut list: Vec<Material> = Vec::new();
     for (index, section) in sections.into_iter().enumerate() {
-        let region = section.optional_text("region", REGION)?;
+        let region = section.optional_label("region", REGION)?;
         let known = list.iter().position(|other| region.is_some() && other.region == region);
         if let Some(first) = known {
             return Err(section.error("region", format!("is the region of material {first} too; give another")));
@@ -112,12 +113,12 @@ pub(super) fn materials(root: &Section, body: &Body, loading: Option<&Loading>) 
     if list.is_empty() { Err(root.missing("material", "the [material] table")) } else { Ok(list) }
 }
 
-const REGION: &str = "the name of the physical surface that it fills";
+const REGION: &str = "the name or number of the physical surface that it fills";
 
 /// A material and what it fills of the body; `last` if none follows.
 fn filling(section: &Section, (body, last): (&Body, bool), loading: Option<&Loading>) -> Result<Material> {
     let material = material::read(section, &["region", "thickness"], loading)?;
-    let (region, thickness) = (section.optional_text("region", REGION)?, thickness(section, body, last)?);
+    let (region, thickness) = (section.optional_label("region", REGION)?, thickness(section, body, last)?);
     Ok(Material { region, thickness, ..material })
 }
 

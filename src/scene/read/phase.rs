@@ -1,5 +1,9 @@
 //! The `[[phase]]` tables: the loading history.
 
+use std::collections::HashMap;
+
+use toml::Value;
+
 use super::Preset;
 use crate::error::Result;
 use crate::scene::keys::{Quantity, Section};
@@ -7,30 +11,37 @@ use crate::scene::{Motion, Phase, Stepping};
 
 /// All phases, in order; at least one. Those that say nothing of their steps have the tolerance of the preset.
 pub(super) fn read_all(root: &Section, preset: Option<Preset>) -> Result<Vec<Phase>> {
+    if root.table().get("phase").is_some_and(Value::is_table) {
+        return Err(root.error("phase", ONE_TABLE));
+    }
     let sections = root.sections("phase", "an array of tables, [[phase]]")?;
     if sections.is_empty() {
         let wrong = if root.has("phase") { "empty" } else { "missing" };
         return Err(root.error("phase", format!("{wrong}; give at least one [[phase]] table")));
     }
     let mut phases: Vec<Phase> = Vec::new();
+    let mut taken = HashMap::new();
     for (index, section) in sections.into_iter().enumerate() {
-        let name = name(&section, index, &phases)?;
+        let name = name(&section, index, &mut taken)?;
         phases.push(phase(&section.called(format!("phase.{name}")), name, preset)?);
     }
     Ok(phases)
 }
+
+const ONE_TABLE: &str = "must be written [[phase]], in double brackets, also where there is one only";
 
 /// The name of the phase at `index` when the file gives none.
 pub(in crate::scene) fn default_name(index: usize) -> String {
     format!("phase-{}", index + 1)
 }
 
-fn name(section: &Section, index: usize, before: &[Phase]) -> Result<String> {
+/// `taken` are the names of the phases before, with their indices.
+fn name(section: &Section, index: usize, taken: &mut HashMap<String, usize>) -> Result<String> {
     let name = section.optional_text("name", "a name on one line")?.unwrap_or_else(|| default_name(index));
     if name.trim().is_empty() {
         return Err(section.error("name", "must be a name that is not empty"));
     }
-    match before.iter().position(|phase| phase.name == name) {
+    match taken.insert(name.clone(), index) {
         Some(first) => Err(section.error("name", format!("{name:?} is the name of phase {first} too; give another"))),
         None => Ok(name),
     }
