@@ -33,7 +33,7 @@ use body::Materials;
 pub use body::{Outline, Stretch, outline};
 pub use estimate::{Estimate, augmentations};
 pub use inputs::inputs;
-pub use profile::{Finest, PressedEnd, Shape, elevations, shape};
+pub use profile::{Finest, PressedEnd, Shape, elevations, measured, numbers, seam_doubt, shape};
 
 /// A scene made ready to run.
 pub struct Problem {

@@ -29,4 +29,5 @@ pub mod snapshot;
 pub mod solution;
 pub mod solve;
 pub mod study;
+pub mod table;
 pub mod verify;

@@ -359,7 +359,9 @@ fn what_is_no_regular_file_is_refused_as_such() {
     assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
     let pipe = pipe.to_str().unwrap();
     for (file, what) in [(pipe, "a pipe"), ("/dev/zero", "a device")] {
-        for arguments in [vec!["check", file], vec!["fit", file], vec!["plot", file], vec!["sweep", file]] {
+        for arguments in
+            [vec!["check", file], vec!["fit", file, "--modulus", "shear"], vec!["plot", file], vec!["sweep", file]]
+        {
             let outcome = mpjr(1, &arguments);
             assert_eq!(outcome.code, 4, "{arguments:?} {}", outcome.stderr);
             outcome.assert_single_message(&format!("{file}: cannot be read: it is {what}, not a regular file"));

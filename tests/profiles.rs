@@ -5,11 +5,11 @@ mod common;
 
 use std::path::Path;
 
-use mpjr::composition::{elevations, outline, shape};
+use mpjr::composition::{Shape, elevations, outline, seam_doubt, shape};
 use mpjr::oracle::{Layer, Moduli};
 use mpjr::output::reader::Results;
 use mpjr::profile::Profile;
-use mpjr::scene::{Source, added_compliance, read};
+use mpjr::scene::{Scene, Source, added_compliance, read};
 
 const SCENE: &str = r#"
 [layer]
@@ -171,4 +171,107 @@ fn a_tolerance_bounds_the_added_compliance() {
             assert!((said / 1e-2 - 1.0).abs() < 1e-12);
         }
     }
+}
+
+/// A scene with a sampled profile that reads `text`, a free-sided face of 1 m unless `set` says otherwise.
+fn sampled(text: &[u8], keys: &str, set: &[&str]) -> (tempfile::TempDir, std::path::PathBuf, Scene) {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("line.txt"), text).unwrap();
+    let file = directory.path().join("scene.toml");
+    let still = SCENE.replace("0.02\ndistance = 0.11", "0\nduration = 1");
+    let scene = still + "profile = \"sampled\"\nfile = \"line.txt\"\n" + keys;
+    std::fs::write(&file, &scene).unwrap();
+    let overrides = set.iter().map(|&set| set.to_owned()).collect();
+    let scene = read(&scene, &Source { file: file.clone(), overrides }).unwrap();
+    (directory, file, scene)
+}
+
+const BOUNDED: [&str; 3] = ["layer.sides=free", "indenter.extend=error", "layer.cells=[16,4]"];
+
+fn shape_of(file: &Path, scene: &Scene) -> Result<Shape, mpjr::error::Error> {
+    let face = outline(scene, file)?.face;
+    shape(scene, file, &elevations(scene, file)?, face)
+}
+
+/// Elevations of a valley 4 um deep over a face of 40 um, in m; the same as five instruments would write them.
+#[test]
+fn one_line_from_many_instruments() {
+    let plain = "0 4e-6\n1e-5 1e-6\n2e-5 0\n3e-5 1.5e-6\n4e-5 4e-6\n";
+    let latin = "Messung\t1\nX (\u{b5}m)\tZ (\u{b5}m)\n0,0\t4,0\n10,0\t1,0\n20,0\t0,0\n30,0\t1,5\n40,0\t4,0\n";
+    let utf16: Vec<u8> = ("\u{feff}".to_owned() + latin).encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let latin: Vec<u8> = latin.chars().map(|letter| u8::try_from(u32::from(letter)).unwrap()).collect();
+    let files: [(&[u8], &str); 6] = [
+        (plain.as_bytes(), ""),
+        (&latin, ""),
+        (&utf16, ""),
+        (b"X_(microns),Z_(microns)\r\n0,4\r\n10,1\r\n20,0\r\n30,1.5\r\n40,4\r\n", ""),
+        (b"40;7;4\n30;7;1,5\n25;8;Bad\n20;7;0\n10;7;1\n0;7;4\n", "columns = [1, 3]\nunit = \"um\"\n"),
+        (
+            b"n,x,z\n1,0,-4000\n2,0.01,-1000\n3,0.02,0\n4,0.03,-1500\n5,0.04,-4000\n",
+            "columns = [\"x\", \"z\"]\nx_unit = \"mm\"\nz_unit = \"nm\"\ninvert = true\n",
+        ),
+    ];
+    for (text, keys) in files {
+        let small = [&BOUNDED[..], &["layer.width=4e-5", "layer.depth=1e-5", "phase.0.approach=1e-7"]].concat();
+        let (_directory, file, scene) = sampled(text, &format!("extend = \"periodic\"\n{keys}"), &small);
+        let profile = shape_of(&file, &scene).unwrap().profile;
+        for (x, height) in [(0.0, 4e-6), (5e-6, 2.5e-6), (1e-5, 1e-6), (2e-5, 0.0), (3e-5, 1.5e-6), (4e-5, 4e-6)] {
+            let found = profile.at(x).unwrap().height;
+            assert!((found - height).abs() < 1e-20, "{keys}: {found:e} at {x}");
+        }
+    }
+}
+
+/// A bump that stands up in the file touches only when it is turned over; `check` draws which points do.
+#[test]
+fn a_peak_that_is_to_touch_first_is_turned_over() {
+    let bump = |x: f64| 1e-3 * (-((x - 0.25) / 0.05).powi(2)).exp();
+    let text: String = (0..=400).map(|k| f64::from(k) / 400.0).map(|x| format!("{x} {}\n", bump(x))).collect();
+    let touching = |keys: &str| {
+        let (directory, file, scene) = sampled(text.as_bytes(), &format!("extend = \"periodic\"\n{keys}"), &BOUNDED);
+        let lowest = shape_of(&file, &scene).unwrap().survey.range()[0];
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_mpjr"));
+        command.arg("check").arg(&file).args(BOUNDED.iter().flat_map(|set| ["--set", set])).current_dir(&directory);
+        let output = common::program::output_of(&mut command);
+        let mark = output.lines().find(|line| line.trim_start_matches(['#', ' ']).starts_with('^')).unwrap().to_owned();
+        (lowest, mark.matches('^').count())
+    };
+    let (lowest, columns) = touching("");
+    assert!(lowest.abs() < 1e-9 && columns > 40, "{lowest:e} {columns}");
+    let (lowest, columns) = touching("invert = true\noffset = 1e-3\n");
+    assert!(lowest.abs() < 1e-9 && (1..8).contains(&columns), "{lowest:e} {columns}");
+}
+
+/// A tilted line is a wall where it repeats: said with its height, closed by blending or by taking off the tilt.
+#[test]
+fn a_wall_at_the_seam_is_said_and_closed() {
+    let height = |x: f64| 1e-4 * (1.0 - (2.0 * std::f64::consts::PI * x).cos()) + 1e-3 * x;
+    let text: String = (0..100).map(|k| f64::from(k) / 100.0).map(|x| format!("{x} {}\n", height(x))).collect();
+    let doubt = |keys: &str| {
+        let (_directory, file, scene) = sampled(text.as_bytes(), &format!("extend = \"periodic\"\n{keys}"), &[]);
+        let elevations = elevations(&scene, &file).unwrap();
+        let steepest = shape_of(&file, &scene).unwrap().survey.points.iter().map(|p| p.slope.abs()).fold(0.0, f64::max);
+        (seam_doubt(&scene, &elevations), steepest)
+    };
+    let (said, steepest) = doubt("");
+    let (key, reason) = said.unwrap();
+    // From 0.99 um at the last point, h(0.99) = 9.9e-4 + 2e-7, to 0 at the first, over one spacing.
+    assert!(key == "indenter.seam" && reason.contains("9.902e-4 m apart"), "{reason}");
+    assert!((steepest - 0.099).abs() < 1e-3, "{steepest}");
+    let (said, steepest) = doubt("seam = \"blend\"\n");
+    // Half of the jump over 0.05 m with the smooth step's steepest slope, 1.5, beside the slopes of the line.
+    assert!(said.is_none() && steepest < 0.5 * 9.9e-4 / 0.05 * 1.5 + 2e-3, "{steepest}");
+    let (said, steepest) = doubt("detrend = \"line\"\n");
+    assert!(said.is_none() && steepest < 2e-3, "{steepest}");
+}
+
+/// Numbers in um read as m are told from a file that is too short.
+#[test]
+fn a_file_in_micrometres_read_as_metres_is_told() {
+    let text = "39.2 190.8\n500.0 192.0\n1723.8 191.0\n";
+    let small = [&BOUNDED[..], &["layer.width=4e-5", "layer.depth=1e-5", "phase.0.approach=1e-7"]].concat();
+    let (_directory, file, scene) = sampled(text.as_bytes(), "extend = \"periodic\"\n", &small);
+    let message = shape_of(&file, &scene).err().unwrap().to_string();
+    assert!(message.contains("the file looks like um read as m"), "{message}");
+    assert!(message.contains("4e7 times the face; say unit = \"um\""), "{message}");
 }

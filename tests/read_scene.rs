@@ -278,7 +278,7 @@ impl Random {
                 Indenter::Circle { radius, centre },
                 Indenter::Wedge { slope: radius, centre },
                 Indenter::Expression { formula: "5e-4*(1-cos(2*pi*x))".to_owned() },
-                Indenter::Sampled { file, extend: Extend::Periodic, period },
+                Indenter::Sampled { file, reading: Reading::default(), extend: Extend::Periodic, period },
                 Indenter::Rough {
                     hurst,
                     rms,

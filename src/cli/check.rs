@@ -25,11 +25,12 @@ pub fn run(arguments: &CheckArguments) -> Result<()> {
     let file = &arguments.scene;
     let source = Source { file: file.clone(), overrides: arguments.set.clone() };
     let scene = scene::read(&scene::open(file)?, &source)?;
-    let elevations = composition::elevations(&scene, file)?;
+    let measured = composition::measured(&scene, file)?;
+    let elevations = measured.as_ref().map_or_else(Vec::new, composition::numbers);
     let outline = composition::outline(&scene, file)?;
     let shape = composition::shape(&scene, file, &elevations, outline.face)?;
     tell(scene.to_toml().trim_end());
-    tell(format_args!("\n{}", profile::describe(&scene, &shape, outline.face)));
+    tell(format_args!("\n{}", profile::describe(&scene, measured.as_ref(), &shape, outline.face)));
     tell(summary::plan(&scene, &outline));
     Ok(())
 }

@@ -2,12 +2,14 @@
 
 use std::fmt::Write;
 
-use crate::composition::{Finest, PressedEnd, Shape, Stretch};
+use crate::composition::{Finest, PressedEnd, Shape, Stretch, numbers, seam_doubt};
+use crate::profile::profilometer::Measured;
 use crate::scene::{Indenter, Scene};
 
 /// A few lines about the profile over the face, with a sketch, and warnings of what a run would miss.
-pub fn describe(scene: &Scene, shape: &Shape, face: Stretch) -> String {
+pub fn describe(scene: &Scene, measured: Option<&Measured>, shape: &Shape, face: Stretch) -> String {
     const COLUMNS: usize = 64;
+    const ROWS: usize = 4;
     let survey = &shape.survey;
     let [low, high] = survey.range();
     let mut text = String::new();
@@ -16,13 +18,19 @@ pub fn describe(scene: &Scene, shape: &Shape, face: Stretch) -> String {
     if let Some(detail) = &shape.detail {
         let _ = write!(text, ": {detail}");
     }
+    if let Some(measured) = measured {
+        let _ = write!(text, "\n               the file is {}", measured.note());
+    }
     let _ = write!(
         text,
         "\n               over the face h = {low:.3e} to {high:.3e} m, rms height {:.3e} m, rms slope {:.3e}",
         survey.rms_height(),
         survey.rms_slope()
     );
-    let _ = write!(text, "\n               {}", survey.sketch(COLUMNS));
+    let _ = write!(text, "\n               the indenter (#) over the face (-): where h is lowest (^) it touches first");
+    for line in survey.drawing(COLUMNS, ROWS) {
+        let _ = write!(text, "\n               {}", line.trim_end());
+    }
     let cell = face.cell();
     match shape.finest {
         Some(Finest::Wavelength(length)) => {
@@ -33,7 +41,9 @@ pub fn describe(scene: &Scene, shape: &Shape, face: Stretch) -> String {
         }
         None => {}
     }
-    for warning in warnings(scene, shape, face) {
+    let seam = measured.and_then(|measured| seam_doubt(scene, &numbers(measured)));
+    let seam = seam.map(|(key, reason)| format!("{key}: {reason}"));
+    for warning in warnings(scene, shape, face).into_iter().chain(seam) {
         let _ = write!(text, "\nwarning:       {warning}");
     }
     text

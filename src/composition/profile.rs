@@ -8,10 +8,12 @@ use crate::expression::Expression;
 use crate::input;
 use crate::loading::{Phase, Placement};
 use crate::profile::{
-    Circle, Formula, Harmonic, Parabola, Point, Profile, Repeated, Rms, Rough, Roughness, Sampled, Survey, Wedge,
-    profilometer,
+    BLEND, Circle, Formula, Harmonic, Parabola, Point, Profile, Repeated, Rms, Rough, Roughness, Sampled, Survey,
+    Wedge,
+    profilometer::{self, Layout, Measured},
 };
-use crate::scene::{self, Extend, Indenter, Scene};
+use crate::scene::{self, Detrend, Extend, Indenter, Reading, Scene, Seam};
+use crate::table::Unit;
 
 /// A profile made ready, and what is known of it.
 pub struct Shape {
@@ -45,17 +47,40 @@ pub enum Finest {
     Spacing(f64),
 }
 
-/// The elevations that the profile of the scene in `file` needs: x, h of each sampling point, m; none for a profile
-/// that has no file.
+/// The measured points that the profile of the scene in `file` needs, made h as the scene says; none for a profile that
+/// has no file.
 ///
 /// # Errors
 /// [`Error::File`] when it cannot be read, [`Error::Scene`] with its line when its content is wrong.
-pub fn elevations(scene: &Scene, file: &Path) -> Result<Vec<f64>> {
-    let Indenter::Sampled { file: name, .. } = &scene.indenter else { return Ok(Vec::new()) };
-    // Comments may be in any encoding.
-    let points = profilometer::parse(&String::from_utf8_lossy(&bytes(name, file)?))
+pub fn measured(scene: &Scene, file: &Path) -> Result<Option<Measured>> {
+    let Indenter::Sampled { file: name, reading, .. } = &scene.indenter else { return Ok(None) };
+    let unit = |name: Option<&str>| name.and_then(Unit::parse);
+    let layout = Layout { columns: reading.columns.clone(), units: [unit(reading.x_unit), unit(reading.z_unit)] };
+    let mut measured = profilometer::read(&bytes(name, file)?, &layout)
         .map_err(|reason| Error::scene(file, "indenter.file", format!("{name:?}: {reason}")))?;
-    Ok(points.iter().flat_map(|point| [point.x, point.height]).collect())
+    if reading.invert {
+        measured.invert();
+    }
+    match reading.detrend {
+        Detrend::None => {}
+        Detrend::Mean => measured.take_off_mean(),
+        Detrend::Line => measured.take_off_line(),
+    }
+    measured.shift(reading.offset);
+    Ok(Some(measured))
+}
+
+/// The [`measured`] points as numbers: x, h of each, m.
+///
+/// # Errors
+/// Those of [`measured`].
+pub fn elevations(scene: &Scene, file: &Path) -> Result<Vec<f64>> {
+    Ok(measured(scene, file)?.as_ref().map_or_else(Vec::new, numbers))
+}
+
+/// x, h of each point, m.
+pub fn numbers(measured: &Measured) -> Vec<f64> {
+    measured.points.iter().flat_map(|point| [point.x, point.height]).collect()
 }
 
 /// The content of the file `name` of elevations, beside the scene in `file`.
@@ -98,12 +123,12 @@ pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], face: Stretch) -> R
             repeat(Box::new(profile), 0.5 * face.width())
         }
         Indenter::Sampled { .. } => {
-            let points = elevations.chunks_exact(2).map(|pair| Point { x: pair[0], height: pair[1] }).collect();
+            let points: Vec<Point> =
+                elevations.chunks_exact(2).map(|pair| Point { x: pair[0], height: pair[1] }).collect();
+            let (count, span) = (points.len(), points[points.len() - 1].x - points[0].x);
             let profile = sampled(points, (scene, file), face)?;
-            let (count, span) = (elevations.len() / 2, elevations[elevations.len() - 2] - elevations[0]);
             finest = Some(Finest::Spacing(span / (count - 1) as f64));
-            let repeats = profile.period().map_or(String::new(), |period| format!(", repeating after {period:?} m"));
-            detail = Some(format!("{count} points over {span:?} m{repeats}"));
+            detail = Some(format!("{count} points over {span:?} m{}", repetition(&profile, scene)));
             Box::new(profile)
         }
         Indenter::Rough { hurst, rms, shortest, longest, period, seed } => {
@@ -192,22 +217,68 @@ fn check_formula(profile: &Formula, scene: &Scene, face: Stretch) -> std::result
     Ok(())
 }
 
+/// After what a sampled profile repeats, how its ends meet, and the periodic layers that it fits on.
+fn repetition(profile: &Sampled, scene: &Scene) -> String {
+    let Some(period) = profile.period() else { return String::new() };
+    let blended = match &scene.indenter {
+        Indenter::Sampled { reading: Reading { seam: Seam::Blend, .. }, .. } => {
+            format!(", its ends blended over {:.3e} m each", BLEND * period)
+        }
+        _ => String::new(),
+    };
+    format!(", repeating after {period:?} m{blended}; periodic layers: {period:?} m wide, or a multiple")
+}
+
+/// What is doubtful of a repeating sampled profile, as the key and the reason: a wall where its ends meet.
+pub fn seam_doubt(scene: &Scene, elevations: &[f64]) -> Option<(&'static str, String)> {
+    let Indenter::Sampled { extend: Extend::Periodic, reading, period, .. } = &scene.indenter else { return None };
+    let points: Vec<Point> = elevations.chunks_exact(2).map(|pair| Point { x: pair[0], height: pair[1] }).collect();
+    let wall = Sampled::wall(&points).filter(|_| reading.seam == Seam::None)?;
+    let length = BLEND * period.or_else(|| Sampled::natural_period(&points))?;
+    Some((
+        "indenter.seam",
+        format!(
+            "where the profile repeats its ends are {wall:.3e} m apart in elevation: a wall that no point beside it has; \
+             seam = \"blend\" closes it over {length:.3e} m at each end, detrend = \"line\" takes off a tilt"
+        ),
+    ))
+}
+
+/// The unit that a file read as m looks like: one in which `span` is some `face` widths, not thousands of them.
+fn looks_like(scene: &Scene, span: f64, face: Stretch) -> Option<String> {
+    let Indenter::Sampled { reading: Reading { x_unit: None, .. }, .. } = &scene.indenter else { return None };
+    let ratio = span / face.width();
+    let unit = ["mm", "um", "nm"].into_iter().filter_map(Unit::parse).find(|unit| unit.to_si(ratio) <= 100.0)?;
+    let name = unit.name;
+    (ratio > 1e3).then(|| {
+        format!(
+            "the file looks like {name} read as m: it is {span:?} m long, {ratio:.0e} times the face; say unit = \"{name}\" \
+             (or x_unit and z_unit)"
+        )
+    })
+}
+
 /// The profile through the points of a file, repeating as the scene says.
-fn sampled(points: Vec<Point>, (scene, file): (&Scene, &Path), face: Stretch) -> Result<Sampled> {
+fn sampled(mut points: Vec<Point>, (scene, file): (&Scene, &Path), face: Stretch) -> Result<Sampled> {
     let wrong = |key: &str, reason: String| Error::scene(file, key, reason);
-    let Indenter::Sampled { extend: Extend::Periodic, period, .. } = scene.indenter else {
+    let Indenter::Sampled { extend: Extend::Periodic, period, ref reading, .. } = scene.indenter else {
         return bounded(points, scene, face).map_err(|reason| wrong("indenter.file", reason));
     };
-    let period = sampled_period(&points, period).map_err(|reason| wrong("indenter.period", reason))?;
+    let blend = reading.seam == Seam::Blend;
+    let period = sampled_period(&points, period, blend).map_err(|reason| wrong("indenter.period", reason))?;
     if face.periodic {
+        let hint = looks_like(scene, period, face).map_or_else(String::new, |hint| format!("; {hint}"));
         scene::whole_periods(face.width(), "periods of the profile", period)
-            .map_err(|reason| wrong("layer.width", format!("{reason}; or give indenter.period")))?;
+            .map_err(|reason| wrong("layer.width", format!("{reason}; or give indenter.period{hint}")))?;
+    }
+    if blend {
+        Sampled::blend(&mut points, period);
     }
     Ok(Sampled::new(points, Some(period)))
 }
 
 /// The period of a repeating sampled profile: what the scene says, or what the points say by themselves.
-fn sampled_period(points: &[Point], said: Option<f64>) -> std::result::Result<f64, String> {
+fn sampled_period(points: &[Point], said: Option<f64>, blend: bool) -> std::result::Result<f64, String> {
     let (first, last) = (points[0], points[points.len() - 1]);
     let span = last.x - first.x;
     let Some(period) = said else {
@@ -220,9 +291,10 @@ fn sampled_period(points: &[Point], said: Option<f64>) -> std::result::Result<f6
     if period < span * (1.0 - 1e-12) {
         return Err(format!("must be at least the length of the file ({span:?} m), got {period:?}"));
     }
-    if period <= span * (1.0 + 1e-12) && first.height != last.height {
+    if period <= span * (1.0 + 1e-12) && first.height != last.height && !blend {
         return Err(format!(
-            "is the length of the file, whose ends must then have the same elevation, got {:?} and {:?} m",
+            "is the length of the file, whose ends must then have the same elevation, got {:?} and {:?} m; or say seam = \
+             \"blend\"",
             first.height, last.height
         ));
     }
@@ -237,8 +309,9 @@ fn bounded(points: Vec<Point>, scene: &Scene, face: Stretch) -> std::result::Res
     if profile.at(from).is_ok() && profile.at(to).is_ok() {
         return Ok(profile);
     }
+    let wide = looks_like(scene, last - first, face).map_or_else(String::new, |hint| format!("{hint}; "));
     Err(format!(
-        "its x must cover {from:?} to {to:?} m (a face of {:?} m, and the sliding of all phases), got {first:?} to \
+        "{wide}its x must cover {from:?} to {to:?} m (a face of {:?} m, and the sliding of all phases), got {first:?} to \
          {last:?} m; give a longer profile, slide less, or say extend = \"periodic\"",
         face.width()
     ))

@@ -11,7 +11,7 @@ use crate::error::Result;
 
 pub use expression::Formula;
 pub use rough::{Rms, Rough, Roughness};
-pub use sampled::{Point, Sampled};
+pub use sampled::{BLEND, Point, Sampled, WALL};
 pub use smooth::{Circle, Harmonic, Parabola, Wedge};
 pub use survey::Survey;
 

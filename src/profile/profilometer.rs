@@ -1,69 +1,119 @@
-//! The text of a profilometer file: two columns, x and elevation.
+//! A profilometer's file: x and elevation out of a table, and what is done to measured elevations.
 
 use super::sampled::Point;
+use crate::table::{Choice, Quantity, Table, Unit};
 
-/// The sampling points of a file, by ascending x.
-///
-/// Two numbers to a line, x and elevation in m, separated by blanks, tabs, a comma or a semicolon; `#` begins a
-/// comment; empty lines count for nothing.
+/// What is to be known to read a file.
+#[derive(Debug, Clone, Default)]
+pub struct Layout {
+    /// x and elevation; none = there are no other columns.
+    pub columns: Option<[Choice; 2]>,
+    /// The units of both; none = what the file says, else m.
+    pub units: [Option<Unit>; 2],
+}
+
+/// The points of a file, by ascending x, and what became of its other lines.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// m
+    pub points: Vec<Point>,
+    /// Points without a value, left out.
+    pub skipped: usize,
+    /// Whether the points had to be sorted.
+    pub sorted: bool,
+    /// The units of x and elevation.
+    pub units: [Unit; 2],
+}
+
+/// Reads the content of a file.
 ///
 /// # Errors
-/// The first line that is wrong, as "line 7: ...", or that there are fewer than two points.
-pub fn parse(text: &str) -> Result<Vec<Point>, String> {
-    // Instruments under Windows like to begin a file with a byte order mark.
-    let text = text.trim_start_matches('\u{feff}');
-    let mut points: Vec<Point> = Vec::new();
-    for (index, line) in text.lines().enumerate() {
-        let content = line.split('#').next().unwrap_or_default().trim();
-        if content.is_empty() {
-            continue;
+/// The first line that is wrong, as "line 7: ...", columns or units that are not as said, or that there are fewer than
+/// two points.
+pub fn read(bytes: &[u8], layout: &Layout) -> Result<Measured, String> {
+    let table = Table::read(bytes).map_err(|fault| fault.to_string())?;
+    let columns = match &layout.columns {
+        Some([x, z]) => [table.find(x)?, table.find(z)?],
+        None if table.width() == 2 => [0, 1],
+        None => {
+            return Err(format!(
+                "has {} columns; say which are x and elevation, such as columns = [1, 2]",
+                table.width()
+            ));
         }
-        let wrong = |reason: String| format!("line {}: {reason}", index + 1);
-        let point = point(content).map_err(wrong)?;
-        match points.last() {
-            Some(before) if point.x == before.x => {
-                return Err(wrong(format!("x = {:?} m is there already; give each x once", point.x)));
-            }
-            Some(before) if point.x < before.x => {
-                let reason = format!("x = {:?} m comes after {:?} m; sort the lines by x", point.x, before.x);
-                return Err(wrong(reason));
-            }
-            _ => points.push(point),
-        }
+    };
+    let [x, z] = [unit(&table, columns[0], layout.units[0])?, unit(&table, columns[1], layout.units[1])?];
+    let mut rows = table.columns(&columns).map_err(|fault| fault.to_string())?;
+    let sorted = rows.sort();
+    // A point that is there twice says nothing new; two elevations of one place say different things.
+    rows.rows.dedup_by(|next, kept| next.values == kept.values);
+    if let Some(pair) = rows.rows.windows(2).find(|pair| pair[0].values[0] == pair[1].values[0]) {
+        let (at, before, line) = (pair[1].values[0], pair[0].line, pair[1].line);
+        return Err(format!("line {line}: x = {at:?} has another elevation on line {before}; give each x once"));
     }
+    let point = |values: &[f64]| Point { x: x.to_si(values[0]), height: z.to_si(values[1]) };
+    let points: Vec<Point> = rows.rows.iter().map(|row| point(&row.values)).collect();
     match points.len() {
-        0 => Err("has no points; give lines of x and elevation in m".to_owned()),
+        0 => Err("has no points; give lines of x and elevation".to_owned()),
         1 => Err("has a single point; give at least two".to_owned()),
-        _ => Ok(points),
+        _ => Ok(Measured { points, skipped: rows.skipped, sorted, units: [x, z] }),
     }
 }
 
-fn point(line: &str) -> Result<Point, String> {
-    let mut values = [0.0; 2];
-    let mut count = 0;
-    let separates = |letter: char| letter.is_whitespace() || matches!(letter, ',' | ';');
-    for word in line.split(separates).filter(|word| !word.is_empty()) {
-        if let Some(value) = values.get_mut(count) {
-            *value = number(word)?;
+/// The unit of a column: what is said must be what the file says.
+fn unit(table: &Table, column: usize, said: Option<Unit>) -> Result<Unit, String> {
+    match (table.unit(column), said) {
+        (Some(unit), _) if unit.quantity != Quantity::Length => {
+            Err(format!("column {} is in {}, which is no length; choose others by columns", column + 1, unit.name))
         }
-        count += 1;
-    }
-    match (count, values) {
-        (2, [x, height]) => Ok(Point { x, height }),
-        (1, _) => Err("has one number; give two, x and elevation in m".to_owned()),
-        (count, _) => Err(format!("has {count} columns; give two, x and elevation in m (decimals with a point)")),
+        (Some(unit), Some(said)) if unit != said => {
+            Err(format!("column {} is in {} by its title, but the scene says {}", column + 1, unit.name, said.name))
+        }
+        (Some(unit), _) => Ok(unit),
+        (None, said) => Ok(said.unwrap_or(Unit::METRE)),
     }
 }
 
-fn number(word: &str) -> Result<f64, String> {
-    const LONGEST: usize = 30;
-    match word.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Err(format!("{word} is not finite; remove the line, or give a number")),
-        Err(_) => {
-            let shown: String = word.chars().take(LONGEST).collect();
-            Err(format!("{shown:?} is not a number; begin comments with #"))
+impl Measured {
+    /// h = -z: the file's peaks become the points that touch first.
+    pub fn invert(&mut self) {
+        self.points.iter_mut().for_each(|point| point.height = -point.height);
+    }
+
+    /// Adds a constant, m.
+    pub fn shift(&mut self, offset: f64) {
+        self.points.iter_mut().for_each(|point| point.height += offset);
+    }
+
+    /// Takes off the mean elevation of the points.
+    pub fn take_off_mean(&mut self) {
+        let mean = self.mean(|point| point.height);
+        self.shift(-mean);
+    }
+
+    /// Takes off the straight line of least squares through the points.
+    pub fn take_off_line(&mut self) {
+        let (middle, mean) = (self.mean(|point| point.x), self.mean(|point| point.height));
+        let squares = self.mean(|point| (point.x - middle).powi(2));
+        let slope = self.mean(|point| (point.x - middle) * (point.height - mean)) / squares;
+        self.points.iter_mut().for_each(|point| point.height -= mean + slope * (point.x - middle));
+    }
+
+    fn mean(&self, value: impl Fn(&Point) -> f64) -> f64 {
+        self.points.iter().map(value).sum::<f64>() / self.points.len() as f64
+    }
+
+    /// What a reader of the scene cannot see: units, lines left out.
+    pub fn note(&self) -> String {
+        let [x, z] = self.units;
+        let mut note = if x == z { format!("in {}", x.name) } else { format!("x in {}, z in {}", x.name, z.name) };
+        if self.skipped > 0 {
+            note += &format!(", {} without a value left out", self.skipped);
         }
+        if self.sorted {
+            note += ", sorted by x";
+        }
+        note
     }
 }
 
@@ -72,30 +122,53 @@ fn number(word: &str) -> Result<f64, String> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn what_separates_and_what_is_skipped() {
-        let text = "\u{feff}# x in m, z in m\r\n\r\n0 1\r\n 1e-3,\t-2 # a pit\n  \n0.25;3.5\n+.5  ,  1E0\n";
-        let points = parse(text).unwrap();
-        let pairs: Vec<(f64, f64)> = points.iter().map(|point| (point.x, point.height)).collect();
-        assert_eq!(pairs, [(0.0, 1.0), (1e-3, -2.0), (0.25, 3.5), (0.5, 1.0)]);
+    fn points(text: &str) -> Vec<(f64, f64)> {
+        let measured = read(text.as_bytes(), &Layout::default()).unwrap();
+        measured.points.iter().map(|point| (point.x, point.height)).collect()
     }
 
     #[test]
-    fn what_is_wrong_has_its_line() {
+    fn order_units_and_gaps() {
+        let text = "X_(microns),Z_(nm)\n20,0\n10,100\n15,Bad\n0,300\n10,100\n";
+        assert_eq!(points(text), [(0.0, 3e-7), (1e-5, 1e-7), (2e-5, 0.0)]);
+        let measured = read(text.as_bytes(), &Layout::default()).unwrap();
+        assert_eq!(measured.note(), "x in um, z in nm, 1 without a value left out, sorted by x");
+        let millimetres = Layout { columns: None, units: [Unit::parse("mm"); 2] };
+        assert_eq!(read(b"0 1\n2 3\n", &millimetres).unwrap().points[1], Point { x: 2e-3, height: 3e-3 });
+        let third = Layout { columns: Some(["1".parse().unwrap(), "z".parse().unwrap()]), ..Layout::default() };
+        assert_eq!(read(b"x,t,Z\n0,7,1\n2,8,3\n", &third).unwrap().points[1], Point { x: 2.0, height: 3.0 });
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
         for (text, message) in [
-            ("", "has no points; give lines of x and elevation in m"),
-            ("# only\n\n", "has no points; give lines of x and elevation in m"),
+            ("", "line 1: the file ends here without any line of two numbers"),
             ("0 1\n", "has a single point; give at least two"),
-            ("0 1\n\n1 2\n1 3\n", "line 4: x = 1.0 m is there already; give each x once"),
-            ("0 1\n1 2\n0.5 3\n", "line 3: x = 0.5 m comes after 1.0 m; sort the lines by x"),
-            ("0 1\n2\n", "line 2: has one number; give two, x and elevation in m"),
-            ("0,5;1,5\n", "line 1: has 4 columns; give two, x and elevation in m (decimals with a point)"),
-            ("0 1\n1 nan\n", "line 2: nan is not finite; remove the line, or give a number"),
-            ("0 1\n1 -inf\n", "line 2: -inf is not finite; remove the line, or give a number"),
-            ("0 1\n1 1e999\n", "line 2: 1e999 is not finite; remove the line, or give a number"),
-            ("x z\n0 1\n", "line 1: \"x\" is not a number; begin comments with #"),
+            ("0 1\n\n1 2\n1 3\n", "line 4: x = 1.0 has another elevation on line 3; give each x once"),
+            ("0 1\n2\n", "line 2: 1 column, but most lines have 2"),
+            ("0 1\n1 1e999\n", "line 2: `1e999` is not a finite number"),
+            ("0 1 2\n1 2 3\n", "has 3 columns; say which are x and elevation, such as columns = [1, 2]"),
+            ("t (s),z (um)\n0,1\n1,2\n", "column 1 is in s, which is no length; choose others by columns"),
         ] {
-            assert_eq!(parse(text).unwrap_err(), message, "{text:?}");
+            assert_eq!(read(text.as_bytes(), &Layout::default()).unwrap_err(), message, "{text:?}");
         }
+        let wrong = Layout { columns: None, units: [Unit::parse("mm"); 2] };
+        let message = "column 1 is in um by its title, but the scene says mm";
+        assert_eq!(read(b"x (um),z (um)\n0,1\n1,2\n", &wrong).unwrap_err(), message);
+    }
+
+    #[test]
+    fn a_tilt_is_taken_off() {
+        let mut measured = read(b"0 1\n1 4\n2 3\n3 6\n", &Layout::default()).unwrap();
+        measured.take_off_line();
+        let heights: Vec<f64> = measured.points.iter().map(|point| point.height).collect();
+        // The line is 1.4 + 1.4 x.
+        for (height, exact) in heights.iter().zip([-0.4, 1.2, -1.2, 0.4]) {
+            assert!((height - exact).abs() < 1e-15, "{heights:?}");
+        }
+        measured.invert();
+        measured.shift(2.0);
+        measured.take_off_mean();
+        assert!((measured.points[0].height - 0.4).abs() < 1e-15);
     }
 }

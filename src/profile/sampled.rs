@@ -18,6 +18,13 @@ pub struct Sampled {
     near: f64,
 }
 
+/// A jump where the profile repeats is a wall from so many mean steps between neighbours on. Of uncorrelated heights
+/// the difference is as large once in a million times.
+pub const WALL: f64 = 5.0;
+
+/// The share of the period, at each end, over which ends are blended.
+pub const BLEND: f64 = 0.05;
+
 /// A sampling point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
@@ -59,6 +66,32 @@ impl Sampled {
         let spacing = span / (points.len() - 1) as f64;
         let equal = |pair: &[Point]| (pair[1].x - pair[0].x - spacing).abs() <= 1e-2 * spacing;
         points.windows(2).all(equal).then_some(span + spacing)
+    }
+
+    /// How far apart in elevation the ends of the points are, m, if that is a wall where they repeat: more than
+    /// [`WALL`] times the root mean square step between neighbours.
+    pub fn wall(points: &[Point]) -> Option<f64> {
+        let jump = (points.first()?.height - points.last()?.height).abs();
+        let squares: f64 = points.windows(2).map(|pair| (pair[1].height - pair[0].height).powi(2)).sum();
+        let step = (squares / (points.len() - 1) as f64).sqrt();
+        (jump > WALL * step).then_some(jump)
+    }
+
+    /// Lets both ends of one `period`, m, of `points` go over into the mean of the two, each by half of the jump over
+    /// [`BLEND`] of the period: h -> h +- jump/2 (3 s^2 - 2 s^3), s from 0 inside to 1 at the end.
+    pub fn blend(points: &mut [Point], period: f64) {
+        let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else { return };
+        let (jump, length) = (first.height - last.height, BLEND * period);
+        let ramp = |distance: f64| {
+            let s = (1.0 - distance / length).max(0.0);
+            0.5 * jump * s * s * (3.0 - 2.0 * s)
+        };
+        for point in &mut *points {
+            point.height += ramp(last.x - point.x) - ramp(point.x - first.x);
+        }
+        // Not even by round-off apart.
+        let end = points[0].height;
+        points[points.len() - 1].height = end;
     }
 
     /// What it repeats after, m; None = it is bounded.
@@ -167,6 +200,23 @@ mod tests {
         for turn in [-1000.0, -1.0, 7.0] {
             let (near, far) = (profile.at(2.25).unwrap(), profile.at(2.25 + 4.0 * turn).unwrap());
             assert!((near.height - far.height).abs() < 1e-12 && near.slope == far.slope);
+        }
+    }
+
+    #[test]
+    fn a_wall_at_the_seam_is_seen_and_closed() {
+        assert_eq!(Sampled::wall(&cosine(100, 0.0)), None);
+        let mut tilted: Vec<Point> = cosine(100, 0.0);
+        tilted.iter_mut().for_each(|point| point.height = 1e-3 * point.x);
+        let jump = Sampled::wall(&tilted).unwrap();
+        assert!((jump - 0.7e-3 * 0.99).abs() < 1e-18, "{jump:e}");
+        let before = tilted.clone();
+        Sampled::blend(&mut tilted, 0.7);
+        assert_eq!(tilted[0].height, tilted[99].height);
+        assert!((tilted[0].height - 0.5 * jump).abs() < 1e-18);
+        for (old, new) in before.iter().zip(&tilted) {
+            let far = old.x > 0.0351 && old.x < 0.693 - 0.0351;
+            assert!(!far || old == new);
         }
     }
 

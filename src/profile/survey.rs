@@ -45,24 +45,28 @@ impl Survey {
         (sum - 0.5 * ends) / pieces
     }
 
-    /// One line of `columns` letters, low to high, each the mean height of its part of the stretch.
-    pub fn sketch(&self, columns: usize) -> String {
-        const LEVELS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+    /// A drawing of `columns` letters by `rows` lines, up is up: the indenter, `#`, above the face, `-`, and under the
+    /// face `^` where it is lowest and touches first. The lowest point of each column counts.
+    pub fn drawing(&self, columns: usize, rows: usize) -> Vec<String> {
         let last = self.points.len() - 1;
-        let column = |c: usize| {
+        let lowest = |c: usize| {
             let part = &self.points[c * last / columns..=((c + 1) * last / columns)];
-            part.iter().map(|point| point.height).sum::<f64>() / part.len() as f64
+            part.iter().map(|point| point.height).fold(f64::INFINITY, f64::min)
         };
-        let heights: Vec<f64> = (0..columns).map(column).collect();
-        let [low, high] = [
-            heights.iter().copied().fold(f64::INFINITY, f64::min),
-            heights.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        ];
-        let level = |height: &f64| match (height - low) / (high - low) {
-            share if share.is_nan() => LEVELS[0],
-            share => LEVELS[((share * 8.0) as usize).min(7)],
+        let [low, high] = self.range();
+        // How far a column's lowest point is above the lowest of all, in lines.
+        let level = |c: usize| match (lowest(c) - low) / (high - low) * rows as f64 {
+            level if level.is_nan() => 0.0,
+            level => level,
         };
-        heights.iter().map(level).collect()
+        let levels: Vec<f64> = (0..columns).map(level).collect();
+        let line = |row: usize| levels.iter().map(|&level| if level < row as f64 + 0.5 { '#' } else { ' ' }).collect();
+        let nearest = levels.iter().copied().fold(f64::INFINITY, f64::min);
+        let touching = |level: &f64| if *level <= nearest + 0.05 { '^' } else { ' ' };
+        let mut lines: Vec<String> = (0..rows).rev().map(line).collect();
+        lines.push("-".repeat(columns));
+        lines.push(levels.iter().map(touching).collect());
+        lines
     }
 }
 
@@ -83,9 +87,10 @@ mod tests {
     }
 
     #[test]
-    fn a_sketch_goes_from_low_to_high() {
+    fn a_drawing_has_the_indenter_above_and_the_lowest_point_marked() {
         let wedge = Wedge { slope: 1.0, centre: 0.5 };
-        assert_eq!(Survey::new(&wedge, [0.0, 1.0], 160).unwrap().sketch(16), "█▇▆▅▄▃▂▁▁▂▃▄▅▆▇█");
-        assert_eq!(Survey::new(&wedge, [0.0, 1.0], 3).unwrap().sketch(8).chars().count(), 8);
+        let lines = Survey::new(&wedge, [0.0, 1.0], 160).unwrap().drawing(8, 3);
+        assert_eq!(lines, ["########", "  ####  ", "   ##   ", "--------", "   ^^   "]);
+        assert_eq!(Survey::new(&wedge, [0.0, 1.0], 3).unwrap().drawing(8, 2)[0].chars().count(), 8);
     }
 }

@@ -21,6 +21,12 @@ impl Band {
         }
     }
 
+    /// A band that reaches past this one by `factor` at both ends.
+    #[must_use]
+    pub fn widened(self, factor: f64) -> Self {
+        Self { from: self.from / factor, to: self.to * factor }
+    }
+
     /// log10(to/from).
     pub fn decades(self) -> f64 {
         self.to.log10() - self.from.log10()

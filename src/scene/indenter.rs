@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::table::Choice;
+
 /// The rigid profile h(x), m; it moves as h(x - s(t)). Where the approach reaches h, contact begins.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "profile", rename_all = "lowercase")]
@@ -43,6 +45,9 @@ pub enum Indenter {
     Sampled {
         /// As typed: relative to the directory of the scene file, unless absolute.
         file: String,
+        /// What its columns are and what is done to them.
+        #[serde(flatten)]
+        reading: Reading,
         /// What is beyond the ends.
         extend: Extend,
         /// m, > 0, only with [`Extend::Periodic`]; none = the one that the points have by themselves.
@@ -65,6 +70,52 @@ pub enum Indenter {
         /// The same seed makes the same profile.
         seed: u64,
     },
+}
+
+/// From the numbers of a file to the elevation of the indenter's lower surface above its datum, in this order.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Reading {
+    /// x and elevation; none = the file has no others.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub columns: Option<[Choice; 2]>,
+    /// The unit of x, by its name; none = what the file says, else m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x_unit: Option<&'static str>,
+    /// The unit of the elevation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub z_unit: Option<&'static str>,
+    /// Whether the file's elevations point out of the indenter: its peaks are to touch first.
+    pub invert: bool,
+    /// What is taken off.
+    pub detrend: Detrend,
+    /// m, added to h at the end.
+    pub offset: f64,
+    /// How the ends of a period meet.
+    pub seam: Seam,
+}
+
+/// What is taken off measured elevations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Detrend {
+    /// Nothing.
+    #[default]
+    None,
+    /// Their mean.
+    Mean,
+    /// The straight line of least squares through the points.
+    Line,
+}
+
+/// How the ends of a period meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Seam {
+    /// As they are.
+    #[default]
+    None,
+    /// Both go over into the mean of the two.
+    Blend,
 }
 
 /// What a sampled profile is beyond its ends.

@@ -22,7 +22,7 @@ use serde::Serialize;
 pub use checks::whole_periods;
 pub use differences::differences;
 pub use include::{Load, include, open};
-pub use indenter::{Extend, Indenter, Rms};
+pub use indenter::{Detrend, Extend, Indenter, Reading, Rms, Seam};
 pub(crate) use keys::nearest;
 pub use overrides::{get, set};
 pub use penalty::{added_compliance, penalty_for, penalty_on_mesh};

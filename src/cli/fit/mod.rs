@@ -1,26 +1,27 @@
 //! `mpjr fit`: from measured moduli, or from the power law of Eq. (11), to a material.
 
+mod data;
 mod figures;
 mod material;
 mod report;
 
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
 use super::terminal::tell;
 use crate::error::{Error, Result};
-use crate::input;
-use crate::rheology::fit::{Residuals, Samples, Test, auto, identify, table, unknowns};
+use crate::rheology::fit::{Residuals, Samples, auto, unknowns};
 use crate::rheology::{Band, Fractional};
+use crate::table::{Choice, Unit};
 
 /// Identify a Prony series: a relaxation curve, a dynamic test or a power law becomes a material
 #[derive(Debug, Clone, Args)]
 pub struct FitArgs {
-    /// Two columns (time s, relaxation modulus Pa) or three (angular frequency rad/s, storage and loss modulus Pa),
-    /// separated by commas, semicolons, tabs or blanks; `#` starts a comment
+    /// Columns of numbers as instruments write them: time and relaxation modulus, or frequency, storage and loss modulus.
+    /// Titles are skipped; s and min, rad/s and Hz, Pa to GPa are taken from them where they are there
     #[arg(value_name = "DATA.csv", required_unless_present = "fractional")]
     pub data: Option<PathBuf>,
     /// Arms of the series, or `auto`: one more for as long as it pays
@@ -32,18 +33,28 @@ pub struct FitArgs {
     /// Draw the series beside the data and the shorter series into this directory, as PNG and SVG
     #[arg(long, value_name = "DIR")]
     pub plot: Option<PathBuf>,
-    /// The modulus that the columns give; Young's is divided by 2 (1 + NU)
-    #[arg(long, value_enum, default_value_t = Modulus::Shear, conflicts_with = "fractional")]
-    pub modulus: Modulus,
-    /// What is made small: series minus data, or the logarithm of their ratio
-    #[arg(long, value_enum, default_value_t = ResidualsArg::Linear)]
-    pub residuals: ResidualsArg,
+    /// The modulus that was measured: required for data. Young's is divided by 2 (1 + NU) and needs --poisson
+    #[arg(long, value_enum, required_unless_present = "fractional", conflicts_with = "fractional")]
+    pub modulus: Option<Modulus>,
+    /// What is made small: series minus data, or the logarithm of their ratio; by default the latter where the moduli
+    /// span more than a decade
+    #[arg(long, value_enum)]
+    pub residuals: Option<ResidualsArg>,
+    /// The columns that are meant, by number or title: time,modulus or frequency,storage,loss
+    #[arg(long, value_name = "A,B[,C]", value_delimiter = ',', value_parser = data::choice, conflicts_with = "fractional")]
+    pub columns: Vec<Choice>,
+    /// The unit of the moduli, where the file does not say it; Pa by default
+    #[arg(long, value_enum, conflicts_with = "fractional")]
+    pub unit: Option<UnitArg>,
     /// The first of three columns is in Hz, not rad/s
     #[arg(long, conflicts_with = "fractional")]
     pub hertz: bool,
-    /// Instantaneous Poisson ratio of the material; it stays constant
-    #[arg(long, value_name = "NU", default_value_t = 0.0, allow_negative_numbers = true)]
-    pub poisson: f64,
+    /// The third column is tan delta, the loss over the storage modulus
+    #[arg(long, conflicts_with = "fractional")]
+    pub tan_delta: bool,
+    /// Instantaneous Poisson ratio of the material, which stays constant; 0 by default
+    #[arg(long, value_name = "NU", allow_negative_numbers = true)]
+    pub poisson: Option<f64>,
     /// The law of power-law data.
     #[command(flatten)]
     pub law: LawArgs,
@@ -111,6 +122,31 @@ pub enum Modulus {
     Young,
 }
 
+/// A unit of moduli.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[allow(missing_docs)]
+pub enum UnitArg {
+    #[value(name = "Pa")]
+    Pascal,
+    #[value(name = "kPa")]
+    Kilopascal,
+    #[value(name = "MPa")]
+    Megapascal,
+    #[value(name = "GPa")]
+    Gigapascal,
+}
+
+impl UnitArg {
+    fn unit(self) -> Unit {
+        match self {
+            Self::Pascal => Unit::PASCAL,
+            Self::Kilopascal => Unit::KILOPASCAL,
+            Self::Megapascal => Unit::MEGAPASCAL,
+            Self::Gigapascal => Unit::GIGAPASCAL,
+        }
+    }
+}
+
 /// What is made small.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ResidualsArg {
@@ -129,11 +165,16 @@ impl From<ResidualsArg> for Residuals {
     }
 }
 
+/// More samples of a law tell no more of it, and take memory.
+const MOST_SAMPLES: usize = 100_000;
+
 /// Shear data, and where they come from.
 struct Source {
     samples: Samples,
     /// One line for the report and the material file.
     origin: String,
+    /// The units of a file, and who says so.
+    units: Option<String>,
     /// The law behind the samples, of the shear modulus.
     law: Option<Fractional>,
     /// The file and the line of its last point.
@@ -142,24 +183,30 @@ struct Source {
 
 /// Runs the command: prints the report to standard output and writes the material.
 pub fn run(args: &FitArgs) -> Result<()> {
-    if !(args.poisson > -1.0 && args.poisson < 0.5) {
-        return Err(Error::Usage(format!("--poisson {}: it must be above -1 and below 0.5", args.poisson)));
+    let poisson = args.poisson.unwrap_or(0.0);
+    if !(poisson > -1.0 && poisson < 0.5) {
+        return Err(Error::Usage(format!("--poisson {poisson}: it must be above -1 and below 0.5")));
     }
     if let Some(out) = &args.out {
         material::check_replaceable(out)?;
     }
     let source = match (&args.law.fractional, &args.data) {
-        (Some(law), _) => sample_law(law.0, args)?,
-        (None, Some(file)) => read(file, args)?,
+        (Some(law), _) => sample_law(law.0, poisson, args)?,
+        (None, Some(file)) => data::read(file, args)?,
         (None, None) => return Err(Error::Usage("a data file or --fractional E,ALPHA is needed".into())),
     };
     enough(&source, args.arms)?;
-    let residuals = args.residuals.into();
+    let residuals = args.residuals.map_or_else(|| Residuals::natural(&source.samples), Residuals::from);
     let mut text = report::header(&source, residuals);
+    let of_the_data = |error| match (error, &source.file) {
+        (Error::Domain(reason), Some((file, _))) => Error::scene(file, "", reason),
+        (Error::Domain(reason), None) => Error::Usage(reason),
+        (other, _) => other,
+    };
     let fit = match args.arms {
-        Arms::Number(arms) => identify(&source.samples, arms.get(), residuals, None)?,
+        Arms::Number(arms) => auto::at_most(&source.samples, arms.get(), residuals).map_err(of_the_data)?,
         Arms::Auto => {
-            let ladder = auto::climb(&source.samples, residuals)?;
+            let ladder = auto::climb(&source.samples, residuals).map_err(of_the_data)?;
             text += &report::ladder(&ladder);
             ladder.rungs[ladder.chosen].fit.clone()
         }
@@ -167,8 +214,9 @@ pub fn run(args: &FitArgs) -> Result<()> {
     text += &report::series(&source, &fit);
     match &args.out {
         Some(out) => {
-            material::write(out, &fit, args.poisson, &source.origin)?;
-            text += &format!("\nmaterial written to {}\n", out.display());
+            material::write(out, &fit, poisson, &source.origin)?;
+            text += &format!("\nmaterial written to {}, with a Poisson ratio of {poisson}", out.display());
+            text += if args.poisson.is_none() { "; --poisson NU gives another\n" } else { "\n" };
         }
         None => text += "\nno file written; --out material.toml writes one for a scene\n",
     }
@@ -181,62 +229,27 @@ pub fn run(args: &FitArgs) -> Result<()> {
     Ok(())
 }
 
-fn sample_law(young: Fractional, args: &FitArgs) -> Result<Source> {
+fn sample_law(young: Fractional, poisson: f64, args: &FitArgs) -> Result<Source> {
     let (Some(from), Some(to)) = (args.law.from, args.law.to) else {
         return Err(Error::Usage("--fractional needs --from and --to, in s".into()));
     };
     let band = Band::new(from, to)
         .map_err(|_| Error::Usage(format!("--from {from} --to {to}: two times in s are needed, 0 < from < to")))?;
     let count = args.law.samples.get();
-    if count < 2 {
-        return Err(Error::Usage("--samples 1: at least two are needed".into()));
+    if !(2..=MOST_SAMPLES).contains(&count) {
+        return Err(Error::Usage(format!("--samples {count}: it must be from 2 to {MOST_SAMPLES}")));
     }
-    let law = Fractional { modulus: young.modulus / (2.0 * (1.0 + args.poisson)), order: young.order };
+    let law = Fractional { modulus: young.modulus / (2.0 * (1.0 + poisson)), order: young.order };
     let time = band.samples(count);
     let modulus = time.iter().map(|&t| law.relaxation(t)).collect();
     let origin = format!(
         "G(t) = E(t)/(2 (1 + {nu})), E(t) = {c} t^-{a} / Gamma(1 - {a}), at {count} log-spaced times from {from} s to \
          {to} s",
-        nu = args.poisson,
+        nu = poisson,
         c = young.modulus,
         a = young.order
     );
-    Ok(Source { samples: Samples::relaxation(time, modulus), origin, law: Some(law), file: None })
-}
-
-fn read(file: &Path, args: &FitArgs) -> Result<Source> {
-    let bytes = input::bytes(file)?;
-    let text = std::str::from_utf8(&bytes).map_err(|error| {
-        let line = 1 + bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count();
-        Error::scene(file, format!("line {line}"), "this is not text in UTF-8")
-    })?;
-    let table = table::parse(text, args.residuals.into())
-        .map_err(|error| Error::scene(file, format!("line {}", error.line), error.reason))?;
-    let mut samples = table.samples;
-    if args.hertz && samples.test == Test::Relaxation {
-        return Err(Error::Usage("--hertz: the file has two columns, a time and a modulus".into()));
-    }
-    if args.hertz {
-        samples.at.iter_mut().for_each(|frequency| *frequency *= std::f64::consts::TAU);
-    }
-    let mut origin = format!(
-        "{} of {} at {} points",
-        match samples.test {
-            Test::Relaxation => "relaxation modulus",
-            Test::Dynamic => "storage and loss modulus",
-        },
-        file.display(),
-        samples.at.len()
-    );
-    match args.modulus {
-        Modulus::Shear => origin += ", in shear",
-        Modulus::Young => {
-            samples = samples.scaled(0.5 / (1.0 + args.poisson));
-            origin += &format!(", Young's, taken as 2 (1 + {}) G", args.poisson);
-        }
-    }
-    let last = table.lines.last().copied().unwrap_or(1);
-    Ok(Source { samples, origin, law: None, file: Some((file.to_owned(), last)) })
+    Ok(Source { samples: Samples::relaxation(time, modulus), origin, units: None, law: Some(law), file: None })
 }
 
 /// Refuses more unknowns than values, naming the line where the data end.

@@ -17,7 +17,8 @@ pub(super) fn header(source: &Source, residuals: Residuals) -> String {
         Residuals::Linear => "linear, series - data",
         Residuals::Relative => "relative, ln(series/data)",
     };
-    format!("data                   {}\nresiduals              {residuals}\n", source.origin)
+    let units = source.units.as_ref().map_or_else(String::new, |units| format!("units                  {units}\n"));
+    format!("data                   {}\n{units}residuals              {residuals}\n", source.origin)
 }
 
 /// The ladder of `--arms auto`.
@@ -42,11 +43,19 @@ pub(super) fn ladder(ladder: &Ladder) -> String {
             }
         );
     }
-    text + match ladder.end {
-        End::NoLongerPays => "the ladder ends because another arm no longer pays\n\n",
-        End::Fine => "the ladder ends because the series is within 1e-4 (rms) of the data\n\n",
-        End::DataExhausted => "the ladder ends because the data have no more values than another arm has unknowns\n\n",
-        End::Most => "the ladder ends at 20 arms\n\n",
+    text + &match ladder.end {
+        End::NoLongerPays => "the ladder ends because another arm no longer pays\n\n".to_owned(),
+        End::Fine => "the ladder ends because the series is within 1e-4 (rms) of the data\n\n".to_owned(),
+        End::DataExhausted => {
+            "the ladder ends because the data have no more values than another arm has unknowns\n\n".to_owned()
+        }
+        End::Undetermined(flaw) => {
+            format!("the ladder ends because the data do not determine the last series: {flaw}\n\n")
+        }
+        End::Most => format!(
+            "warning: the ladder ends at {} arms, 1.2 to a decade, though another still pays; --arms N takes more\n\n",
+            ladder.rungs.len()
+        ),
     }
 }
 
@@ -94,13 +103,13 @@ pub(super) fn series(source: &Source, fit: &Fit) -> String {
         fit.rms_deviation(),
         fit.max_deviation()
     );
-    text += &warnings(source, fit);
+    text += &warnings(fit);
     text += &bands(source, fit);
     text
 }
 
-/// Condition, idle arms and times that the data do not reach.
-fn warnings(source: &Source, fit: &Fit) -> String {
+/// Condition and arms that the data do not carry.
+fn warnings(fit: &Fit) -> String {
     let condition = fit.uncertainty.condition;
     let mut text = format!("condition number       {condition:.1e}\n");
     if condition > ILL_CONDITIONED {
@@ -110,18 +119,9 @@ fn warnings(source: &Source, fit: &Fit) -> String {
         text += "warning: as many unknowns as values; the standard errors are unknown\n";
     }
     if fit.dropped > 0 {
-        let _ = writeln!(text, "warning: the data gave no weight to {} of the arms asked for; left out", fit.dropped);
-    }
-    if let Some(band) = source.samples.times() {
-        let outside = fit.series.arms.iter().filter(|arm| arm.time < band.from / 10.0 || arm.time > band.to * 10.0);
-        let count = outside.count();
-        if count > 0 {
-            let _ = writeln!(
-                text,
-                "warning: {count} of the times lie{} more than a decade outside the data",
-                if count == 1 { "s" } else { "" }
-            );
-        }
+        let (carried, asked) = (fit.series.arms.len(), fit.series.arms.len() + fit.dropped);
+        let _ =
+            writeln!(text, "warning: the data carry {carried} of the {asked} arms asked for; the others are left out");
     }
     text
 }

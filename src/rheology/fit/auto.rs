@@ -1,15 +1,20 @@
 //! The number of arms: one more for as long as it pays.
 
+use super::quality::{Undetermined, undetermined};
 use super::{Fit, Residuals, Samples, identify, unknowns};
 use crate::error::{Error, Result};
+use crate::rheology::Band;
 
 /// The gain in the Bayesian information criterion that another arm must bring: Kass and Raftery, J. Am. Stat. Assoc.
 /// 90 (1995) 773, call more than 10 very strong evidence.
 pub const GAIN: f64 = 10.0;
 /// The root mean square deviation from the data below which no measurement asks for another arm.
 pub const FINE: f64 = 1e-4;
-/// No ladder goes beyond this many arms.
-pub const MOST: usize = 20;
+/// The most arms of a ladder: 1.2 to a decade of the data, but 20 at least and 50 at most.
+pub fn most(samples: &Samples) -> usize {
+    let decades = samples.times().map_or(0.0, Band::decades);
+    ((1.2 * decades).ceil() as usize).clamp(20, 50)
+}
 
 /// One length of the series.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,7 +34,9 @@ pub enum End {
     Fine,
     /// The next arm would leave no value to check the series with.
     DataExhausted,
-    /// [`MOST`] arms.
+    /// The data do not determine the next series; the last rung is that one.
+    Undetermined(Undetermined),
+    /// [`most`] arms.
     Most,
 }
 
@@ -48,7 +55,7 @@ pub struct Ladder {
 pub fn climb(samples: &Samples, residuals: Residuals) -> Result<Ladder> {
     let values = samples.values.len();
     let mut rungs: Vec<Rung> = Vec::new();
-    for arms in 1..=MOST {
+    for arms in 1..=most(samples) {
         // One value more than unknowns, or any data would be met exactly.
         if values <= unknowns(arms) {
             return ended(rungs, End::DataExhausted, values);
@@ -57,15 +64,52 @@ pub fn climb(samples: &Samples, residuals: Residuals) -> Result<Ladder> {
         let rung = Rung { bic: criterion(samples, residuals, &fit), fit };
         let pays = rungs.last().is_none_or(|last| last.bic - rung.bic > GAIN && rung.fit.dropped == 0);
         let fine = rung.fit.rms_deviation() < FINE;
+        let flaw = undetermined(samples, &rung.fit);
         rungs.push(rung);
-        if !pays {
-            return Ok(Ladder { chosen: rungs.len() - 2, rungs, end: End::NoLongerPays });
+        let before = rungs.len().checked_sub(2);
+        if let (false, Some(chosen)) = (pays, before) {
+            return Ok(Ladder { chosen, rungs, end: End::NoLongerPays });
+        }
+        if let Some(flaw) = flaw {
+            let chosen = before.ok_or_else(|| Error::Domain(format!("the data determine no arm: {flaw}")))?;
+            return Ok(Ladder { chosen, rungs, end: End::Undetermined(flaw) });
         }
         if fine {
             return ended(rungs, End::Fine, values);
         }
     }
     ended(rungs, End::Most, values)
+}
+
+/// The series of `arms` arms; if the data do not determine that many, the longest one that they determine and of which
+/// the last arm pays. The others count as dropped.
+pub fn at_most(samples: &Samples, arms: usize, residuals: Residuals) -> Result<Fit> {
+    let mut first = None;
+    let mut best: Option<Rung> = None;
+    let mut next = arms;
+    while next > 0 {
+        let fewer = next;
+        let fit = identify(samples, fewer, residuals, None)?;
+        next = fewer.min(fit.series.arms.len().max(1)) - 1;
+        if let Some(flaw) = undetermined(samples, &fit) {
+            first = first.or(Some(flaw));
+            continue;
+        }
+        let rung = Rung { bic: criterion(samples, residuals, &fit), fit };
+        match best {
+            Some(longer) if rung.bic - longer.bic > GAIN => return Ok(counting(longer.fit, arms)),
+            _ if fewer == arms && rung.fit.dropped == 0 => return Ok(rung.fit),
+            _ => best = Some(rung),
+        }
+    }
+    let flaw = first.map_or_else(String::new, |flaw| format!(": {flaw}"));
+    let best = best.ok_or_else(|| Error::Domain(format!("the data determine no arm{flaw}")))?;
+    Ok(counting(best.fit, arms))
+}
+
+/// With all that are missing of the arms asked for as dropped.
+fn counting(fit: Fit, asked: usize) -> Fit {
+    Fit { dropped: asked - fit.series.arms.len(), ..fit }
 }
 
 fn ended(rungs: Vec<Rung>, end: End, values: usize) -> Result<Ladder> {

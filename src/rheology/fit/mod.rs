@@ -11,16 +11,15 @@ mod linear;
 mod nonlinear;
 pub mod quality;
 mod samples;
-pub mod table;
 
 use std::cmp::Ordering;
 
 pub use auto::{Ladder, Rung};
-pub use quality::Uncertainty;
+pub use quality::{Uncertainty, Undetermined};
 pub use samples::{Samples, Test};
 
-use self::nonlinear::{Minimum, Moduli, minimise};
-use super::{Arm, Prony};
+use self::nonlinear::{Bounds, Minimum, Moduli, minimise};
+use super::{Arm, Band, Prony};
 use crate::error::{Error, Result};
 
 /// What is made small.
@@ -30,6 +29,15 @@ pub enum Residuals {
     Linear,
     /// ln(series/data): every decade of the modulus counts the same.
     Relative,
+}
+
+impl Residuals {
+    /// Relative where the moduli span more than a decade, so that the small ones count; a modulus of 0 has no logarithm.
+    pub fn natural(samples: &Samples) -> Self {
+        let least = samples.values.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = samples.values.iter().copied().fold(0.0, f64::max);
+        if least > 0.0 && most > 10.0 * least { Self::Relative } else { Self::Linear }
+    }
 }
 
 /// Why the iteration ended.
@@ -96,19 +104,40 @@ pub fn identify(samples: &Samples, arms: usize, residuals: Residuals, previous: 
     if !(scale > 0.0 && scale.is_finite()) {
         return Err(Error::Domain("the moduli must be finite and not all zero".into()));
     }
+    let band = samples
+        .times()
+        .ok_or_else(|| Error::Domain("relaxation times need data at two positive times or frequencies".into()))?;
     // Around 1 Pa, where the logarithms of the unknowns are small.
     let unit = samples.scaled(1.0 / scale);
-    let minima = trial_times(&unit, arms, residuals, previous)?.into_iter().map(|times| {
-        let start = start(&unit, residuals, &times);
-        minimise(&unit, residuals, start, 400, 1)
-    });
+    let bounds = Bounds::of(band.widened(REACH));
+    let minima = starts(&unit, band, arms, residuals, previous)
+        .into_iter()
+        .map(|start| minimise(&unit, residuals, bounds, start, 400, 1));
     let best = minima.min_by(|a, b| order(a.cost, b.cost));
     let best = best.ok_or_else(|| Error::Internal("no trial times".into()))?;
     let spent = best.evaluations;
-    let mut best = minimise(&unit, residuals, best.moduli, 1000, 20);
+    let mut best = minimise(&unit, residuals, bounds, best.moduli, 1000, 20);
     best.evaluations += spent;
-    let best = without_idle(&unit, residuals, best);
+    let best = without_idle(&unit, residuals, bounds, best);
     Ok(finish(samples, residuals, scale, arms, best))
+}
+
+/// How far past the data a relaxation time may lie.
+const REACH: f64 = 10.0;
+
+/// The moduli that belong to several sets of trial times; of many sets only those that come closest to the data.
+fn starts(samples: &Samples, band: Band, arms: usize, residuals: Residuals, previous: Option<&Fit>) -> Vec<Moduli> {
+    // Long series cost most and know best where the next arm goes.
+    let most = if arms > 8 { 3 } else { 8 };
+    let sets = trial_times(samples, band, arms, residuals, previous);
+    let mut starts: Vec<(f64, Moduli)> = sets
+        .into_iter()
+        .map(|times| start(samples, residuals, &times))
+        .map(|start| (start.cost(samples, residuals), start))
+        .collect();
+    starts.sort_by(|a, b| order(a.0, b.0));
+    starts.truncate(most);
+    starts.into_iter().map(|(_, start)| start).collect()
 }
 
 /// Finite costs first, ascending.
@@ -118,26 +147,28 @@ fn order(a: f64, b: f64) -> Ordering {
 
 /// The sets of trial times: evenly over the logarithm of the band, inside it and with its ends; gathered from the
 /// non-negative spectrum on a dense grid; and the times of the shorter series with one more in every gap.
-fn trial_times(samples: &Samples, arms: usize, residuals: Residuals, previous: Option<&Fit>) -> Result<Vec<Vec<f64>>> {
-    let band = samples
-        .times()
-        .ok_or_else(|| Error::Domain("relaxation times need data at two positive times or frequencies".into()))?;
-    let mut sets = vec![band.interior(arms), band.samples(arms), spectrum(samples, arms, residuals)];
+fn trial_times(
+    samples: &Samples,
+    band: Band,
+    arms: usize,
+    residuals: Residuals,
+    previous: Option<&Fit>,
+) -> Vec<Vec<f64>> {
+    let mut sets = vec![band.interior(arms), band.samples(arms), spectrum(samples, band, arms, residuals)];
     if let Some(fit) = previous.filter(|fit| fit.series.arms.len() + 1 == arms) {
         let known: Vec<f64> = fit.series.arms.iter().map(|arm| arm.time).collect();
-        let ends = [known[0] / 10.0, known[known.len() - 1] * 10.0];
+        let ends = [known[0] / REACH, known[known.len() - 1] * REACH];
         let gaps = known.windows(2).map(|pair| (pair[0] * pair[1]).sqrt());
         sets.extend(gaps.chain(ends).map(|new| [known.clone(), vec![new]].concat()));
     }
-    Ok(sets)
+    sets
 }
 
 /// Trial times where a non-negative least-squares spectrum over many fixed times has its weight: neighbours are
 /// merged, the closest first, until `arms` are left.
-fn spectrum(samples: &Samples, arms: usize, residuals: Residuals) -> Vec<f64> {
-    let Some(band) = samples.times() else { return Vec::new() };
+fn spectrum(samples: &Samples, band: Band, arms: usize, residuals: Residuals) -> Vec<f64> {
     // The spectrum of a broad relaxation reaches a little past the data at both ends.
-    let wide = crate::rheology::Band { from: band.from / 3.0, to: band.to * 3.0 };
+    let wide = band.widened(3.0);
     let grid = wide.samples(((wide.decades() * 6.0) as usize).clamp(3 * arms, 20 * arms + 40));
     let moduli = linear::moduli(samples, residuals, &grid);
     let mut lines: Vec<(f64, f64)> =
@@ -163,21 +194,35 @@ fn start(samples: &Samples, residuals: Residuals, times: &[f64]) -> Moduli {
     }
 }
 
-/// The same minimum with fewer unknowns, where some of them are zero: a logarithm never gets there.
-fn without_idle(samples: &Samples, residuals: Residuals, found: Minimum) -> Minimum {
+/// The same minimum with fewer unknowns, where some of them are zero, which a logarithm never gets to, or do the same.
+fn without_idle(samples: &Samples, residuals: Residuals, bounds: Bounds, found: Minimum) -> Minimum {
     let linear = linear::moduli(samples, residuals, &found.moduli.times());
-    let idle = |modulus: f64, best: f64| best == 0.0 || modulus < 1e-9 * found.moduli.instantaneous();
-    let spring = found.moduli.spring.filter(|&spring| !idle(spring, linear[0]));
-    let arms =
-        found.moduli.arms.iter().zip(&linear[1..]).filter(|(arm, best)| !idle(arm.0, **best)).map(|(arm, _)| *arm);
-    let fewer = Moduli { spring, arms: arms.collect() };
+    let shares = found.moduli.shares(samples);
+    let idle = |share: f64, best: f64| best == 0.0 || share < 1e-9;
+    let spring = found.moduli.spring.filter(|_| !idle(shares[0], linear[0]));
+    let active = found.moduli.arms.iter().zip(shares[1..].iter().zip(&linear[1..]));
+    let arms = merged(active.filter(|(_, (share, best))| !idle(**share, **best)).map(|(arm, _)| *arm).collect());
+    let fewer = Moduli { spring, arms };
     if fewer == found.moduli || fewer.arms.is_empty() && fewer.spring.is_none() {
         return found;
     }
-    let mut again = minimise(samples, residuals, fewer, 1000, 20);
+    let mut again = minimise(samples, residuals, bounds, fewer, 1000, 20);
     again.evaluations += found.evaluations;
     let noise = (1e-14 * samples.values.len() as f64).powi(2);
-    if again.cost <= found.cost * (1.0 + 1e-9) + noise { again } else { found }
+    if again.cost <= found.cost * (1.0 + 1e-6) + noise { again } else { found }
+}
+
+/// Arms of times that are the same to 1e-3, by ascending time, as one arm each.
+fn merged(mut arms: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    arms.sort_by(|a, b| a.1.total_cmp(&b.1));
+    arms.dedup_by(|next, kept| {
+        let same = next.1 < kept.1 * 1.001;
+        if same {
+            kept.0 += next.0;
+        }
+        same
+    });
+    arms
 }
 
 /// From the minimum in units of `scale` to the series, with what is to be said of it.

@@ -1,5 +1,7 @@
 //! How far to trust an identified series: covariance, condition, and the band where it follows the data.
 
+use std::fmt;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::nonlinear::Moduli;
@@ -29,6 +31,40 @@ pub struct StandardErrors {
     pub weights: Vec<f64>,
     /// Of each time, relative to it.
     pub times: Vec<f64>,
+}
+
+/// Why the data do not determine a series.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Undetermined {
+    /// Two unknowns do the same: the Jacobian is singular.
+    Singular,
+    /// The time of this arm, counted from 0, may as well be ten times as long or as short.
+    Time(usize),
+    /// M(0) may as well be twice as large or nothing; or, with as many unknowns as values, it is more than ten times
+    /// what was measured.
+    Instantaneous,
+}
+
+impl fmt::Display for Undetermined {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Singular => f.write_str("two of the unknowns do the same"),
+            Self::Time(arm) => write!(f, "they say of the time of arm {} not even the decade", arm + 1),
+            Self::Instantaneous => f.write_str("they say nothing of the instantaneous modulus"),
+        }
+    }
+}
+
+/// The first reason why the data do not determine `fit`, if there is one. A standard error is the measure: surplus arms,
+/// and arms that run off to where there are no data, have times of which nothing is known.
+pub fn undetermined(samples: &Samples, fit: &Fit) -> Option<Undetermined> {
+    let largest = samples.values.iter().copied().fold(0.0, f64::max);
+    match &fit.uncertainty.standard_errors {
+        Some(errors) if errors.instantaneous > 1.0 => Some(Undetermined::Instantaneous),
+        Some(errors) => errors.times.iter().position(|error| *error > std::f64::consts::LN_10).map(Undetermined::Time),
+        None if fit.uncertainty.condition >= 1.0 / f64::EPSILON => Some(Undetermined::Singular),
+        None => (fit.instantaneous > 10.0 * largest).then_some(Undetermined::Instantaneous),
+    }
 }
 
 /// The uncertainty of `moduli` as the least-squares answer to `samples`.
@@ -93,7 +129,9 @@ pub fn trust(samples: &Samples, fit: &Fit, limit: f64) -> Option<Trust> {
     };
     let good =
         |i: usize| fit.deviation.chunks(points).map(|part| smooth(part, i)).all(|d| d.abs() <= limit || d.is_nan());
-    let length = |i: usize, j: usize| (samples.at[j] / samples.at[i].max(f64::MIN_POSITIVE)).ln();
+    // A row at t = 0 is as good as one at the first time after it: there are no decades down to zero.
+    let first = samples.at.iter().copied().find(|at| *at > 0.0).unwrap_or(1.0);
+    let length = |i: usize, j: usize| (samples.at[j].max(first) / samples.at[i].max(first)).ln();
     let mut best: Option<(usize, usize)> = None;
     let mut start = None;
     for i in 0..points {

@@ -2,7 +2,8 @@
 
 use crate::error::Result;
 use crate::scene::keys::{Quantity, Section};
-use crate::scene::{Extend, Indenter, Rms};
+use crate::scene::{Detrend, Extend, Indenter, Reading, Rms, Seam};
+use crate::table::{self, Choice, Unit};
 
 #[derive(Clone, Copy)]
 enum Profile {
@@ -42,6 +43,14 @@ pub(super) fn read(section: &Section) -> Result<Indenter> {
             "slope",
             "formula",
             "file",
+            "columns",
+            "unit",
+            "x_unit",
+            "z_unit",
+            "invert",
+            "detrend",
+            "offset",
+            "seam",
             "extend",
             "period",
             "hurst",
@@ -87,14 +96,57 @@ fn sampled(section: &Section) -> Result<Indenter> {
     const FILE: &str = "the name of a file of two columns, x and elevation in m";
     const EXTENDS: [(&str, Extend); 2] = [("periodic", Extend::Periodic), ("error", Extend::Error)];
 
-    section.only(&["profile", "file", "extend", "period"])?;
+    section.only(&[
+        "profile", "file", "columns", "unit", "x_unit", "z_unit", "invert", "detrend", "offset", "seam", "extend",
+        "period",
+    ])?;
     let file = text(section, "file", FILE)?;
     let extend = section.choice("extend", &EXTENDS, &[])?;
     let period = section.optional_number("period", LENGTH)?;
-    if period.is_some() && extend == Extend::Error {
-        return Err(section.error("period", "needs extend = \"periodic\"; remove it, or change that"));
+    let reading = reading(section)?;
+    if extend == Extend::Error && (period.is_some() || reading.seam == Seam::Blend) {
+        let key = if period.is_some() { "period" } else { "seam" };
+        return Err(section.error(key, "needs extend = \"periodic\"; remove it, or change that"));
     }
-    Ok(Indenter::Sampled { file, extend, period })
+    Ok(Indenter::Sampled { file, reading, extend, period })
+}
+
+fn reading(section: &Section) -> Result<Reading> {
+    const DETRENDS: [(&str, Detrend); 3] = [("none", Detrend::None), ("mean", Detrend::Mean), ("line", Detrend::Line)];
+    const SEAMS: [(&str, Seam); 2] = [("none", Seam::None), ("blend", Seam::Blend)];
+
+    let names = Unit::names(table::Quantity::Length);
+    let units: Vec<(&str, &'static str)> = names.iter().map(|name| (*name, *name)).collect();
+    let both = section.optional_choice("unit", &units, &[])?;
+    let unit = |key: &str| match section.optional_choice(key, &units, &[])? {
+        Some(_) if both.is_some() => Err(section.error(key, "cannot stand beside unit, which is for both columns")),
+        own => Ok(own.or(both)),
+    };
+    Ok(Reading {
+        columns: columns(section)?,
+        x_unit: unit("x_unit")?,
+        z_unit: unit("z_unit")?,
+        invert: section.optional_flag("invert")?.unwrap_or(false),
+        detrend: section.optional_choice("detrend", &DETRENDS, &[])?.unwrap_or(Detrend::None),
+        offset: section.optional_number("offset", POSITION)?.unwrap_or(0.0),
+        seam: section.optional_choice("seam", &SEAMS, &[])?.unwrap_or(Seam::None),
+    })
+}
+
+/// Two columns of a file, by number or title.
+fn columns(section: &Section) -> Result<Option<[Choice; 2]>> {
+    const WHAT: &str = "two columns, x and elevation, by their numbers from 1 or their titles, such as [1, 3]";
+    let choice = |value: &toml::Value| match value {
+        toml::Value::Integer(number) => number.to_string().parse().ok(),
+        toml::Value::String(title) => title.parse().ok(),
+        _ => None,
+    };
+    let choices: Vec<Option<Choice>> = section.values("columns", WHAT)?.iter().map(choice).collect();
+    match choices.as_slice() {
+        [] if !section.has("columns") => Ok(None),
+        [Some(x), Some(z)] if x != z => Ok(Some([x.clone(), z.clone()])),
+        _ => Err(section.error("columns", format!("must be {WHAT}"))),
+    }
 }
 
 fn rough(section: &Section) -> Result<Indenter> {
