@@ -33,7 +33,7 @@ use body::Materials;
 pub use body::{Outline, Stretch, outline};
 pub use estimate::{Estimate, augmentations};
 pub use inputs::inputs;
-pub use profile::{Finest, PressedEnd, Shape, elevations, measured, numbers, seam_doubt, shape};
+pub use profile::{Finest, PressedEnd, Shape, elevations, measured, numbers, reach, seam_doubt, shape};
 
 /// A scene made ready to run.
 pub struct Problem {
@@ -72,20 +72,17 @@ impl Compliances {
     }
 }
 
-/// Builds what `scene`, which was read from `file`, asks for, distributed over `comm`. What it needs of other files is
-/// read by one rank.
-pub fn build(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Problem> {
-    build_reusing(comm, scene, file, &Compliances::default())
+/// The body and the indenter of a scene, read and checked: all that it may be refused for.
+pub struct Parts {
+    /// The body's mesh.
+    pub mesh: Mesh,
+    /// The indenter's profile.
+    pub shape: Shape,
 }
 
-/// As [`build`], with what scenes before this one had computed.
-pub fn build_reusing(
-    comm: &SimpleCommunicator,
-    scene: &Scene,
-    file: &Path,
-    compliances: &Compliances,
-) -> Result<Problem> {
-    // First what the scene may be refused for.
+/// What `scene`, which was read from `file`, is made of, on every rank of `comm`. What it needs of other files is read by
+/// one of them. Collective.
+pub fn prepare(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Parts> {
     let elevations = share_numbers(comm, || elevations(scene, file))?;
     if scene.layer().is_some() {
         // A layer's outline is known before its mesh, which takes memory itself.
@@ -95,8 +92,21 @@ pub fn build_reusing(
     if scene.layer().is_none() {
         estimate::fits(comm, scene, file, &Outline::of(scene, &mesh))?;
     }
-    let profile = shape(scene, file, &elevations, Stretch::of(scene, &mesh))?.profile;
-    assemble(comm, scene, (mesh, profile), compliances)
+    let shape = shape(scene, file, &elevations, Stretch::of(scene, &mesh))?;
+    Ok(Parts { mesh, shape })
+}
+
+/// As [`prepare`], with the bytes of the .msh file that the scene names, on every rank, instead of the file.
+pub fn prepare_on_mesh(scene: &Scene, bytes: &[u8]) -> Result<Parts> {
+    let mesh = body::mesh_of(bytes, scene)?;
+    let shape = shape(scene, Path::new(""), &[], Stretch::of(scene, &mesh))?;
+    Ok(Parts { mesh, shape })
+}
+
+/// Builds what `scene`, which was read from `file`, asks for, distributed over `comm`.
+pub fn build(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Problem> {
+    let Parts { mesh, shape } = prepare(comm, scene, file)?;
+    assemble(comm, scene, (mesh, shape.profile), &Compliances::default())
 }
 
 /// As [`build`], with another profile than the scene's.
@@ -104,14 +114,8 @@ pub fn build_with_profile(comm: &SimpleCommunicator, scene: &Scene, profile: Box
     assemble(comm, scene, (body::mesh(comm, scene, Path::new(""))?, profile), &Compliances::default())
 }
 
-/// As [`build`], with the bytes of the .msh file that the scene names, on every rank, instead of the file.
-pub fn build_on_mesh(comm: &SimpleCommunicator, scene: &Scene, bytes: &[u8]) -> Result<Problem> {
-    let mesh = body::mesh_of(bytes, scene)?;
-    let profile = shape(scene, Path::new(""), &[], Stretch::of(scene, &mesh))?.profile;
-    assemble(comm, scene, (mesh, profile), &Compliances::default())
-}
-
-fn assemble(
+/// Makes a problem of the scene's mesh and profile, with what scenes before this one had computed.
+pub fn assemble(
     comm: &SimpleCommunicator,
     scene: &Scene,
     (mesh, profile): (Mesh, Box<dyn Profile>),
@@ -302,8 +306,34 @@ fn clearance(scene: &Scene, interface: &mut Interface) -> Result<f64> {
     Ok(gaps.into_iter().fold(f64::INFINITY, f64::min))
 }
 
-/// The phases end to end, each from where the one before left the indenter; a step ends at every moment that bulk
-/// output asks for. The indenter touches after an approach by `clearance`, m.
+/// The phases end to end, each from where the one before left the indenter, without their steps.
+pub fn course(scene: &Scene) -> Vec<Phase> {
+    let (mut start, mut approach, mut sliding) = (0.0, 0.0, 0.0);
+    let mut list = Vec::with_capacity(scene.phases.len());
+    for phase in &scene.phases {
+        let to = phase.approach.unwrap_or(approach);
+        let motion = match phase.motion {
+            scene::Motion::Velocity(v) => Motion::Velocity(v),
+            scene::Motion::Tangential { amplitude, cycles } => Motion::Sinusoid { amplitude, cycles },
+        };
+        let phase = Phase {
+            name: phase.name.clone(),
+            start,
+            duration: phase.duration,
+            approach: [approach, to],
+            sliding,
+            motion,
+            steps: Vec::new(),
+            adaptive: None,
+        };
+        (start, approach, sliding) = (phase.end(), to, phase.final_sliding());
+        list.push(phase);
+    }
+    list
+}
+
+/// The phases with their steps; a step ends at every moment that bulk output asks for. The indenter touches after an
+/// approach by `clearance`, m.
 pub fn phases(scene: &Scene, clearance: f64) -> Vec<Phase> {
     let deepest = scene.deepest() - clearance;
     // What never touches, or just so, is given its way of getting there.
@@ -314,37 +344,20 @@ pub fn phases(scene: &Scene, clearance: f64) -> Vec<Phase> {
     let mut moments: Vec<f64> = at.iter().filter_map(moment).collect();
     let ends: HashSet<&str> = at.iter().filter_map(When::phase_end).collect();
     moments.sort_by(f64::total_cmp);
-    let (mut start, mut approach, mut sliding) = (0.0, 0.0, 0.0);
-    let mut list = Vec::with_capacity(scene.phases.len());
-    for phase in &scene.phases {
-        let to = phase.approach.unwrap_or(approach);
-        let motion = match phase.motion {
-            scene::Motion::Velocity(v) => Motion::Velocity(v),
-            scene::Motion::Tangential { amplitude, cycles } => Motion::Sinusoid { amplitude, cycles },
-        };
-        let (count, tolerance) = match phase.stepping {
+    let mut list = course(scene);
+    for (phase, said) in list.iter_mut().zip(&scene.phases) {
+        let (count, tolerance) = match said.stepping {
             Stepping::Steps(steps) => (steps, None),
             Stepping::Tolerance(tolerance) => (1, Some(tolerance)),
         };
-        let mut steps = loading::targets(start, phase.duration, count, &moments);
-        if let Some(last) = steps.last_mut() {
+        phase.steps = loading::targets(phase.start, phase.duration, count, &moments);
+        if let Some(last) = phase.steps.last_mut() {
             last.bulk_output |= ends.contains(phase.name.as_str());
         }
-        let mut phase = Phase {
-            name: phase.name.clone(),
-            start,
-            duration: phase.duration,
-            approach: [approach, to],
-            sliding,
-            motion,
-            steps,
-            adaptive: None,
-        };
         let after = phase.rates(phase.start);
         let jump = (after[0] - rates[0]).abs() + (after[1] - rates[1]).abs();
-        phase.adaptive = tolerance.map(|tolerance| Adaptive::new(&phase, tolerance * scale, jump));
-        (start, approach, sliding, rates) = (phase.end(), to, phase.final_sliding(), phase.rates(phase.end()));
-        list.push(phase);
+        phase.adaptive = tolerance.map(|tolerance| Adaptive::new(phase, tolerance * scale, jump));
+        rates = phase.rates(phase.end());
     }
     list
 }

@@ -39,6 +39,8 @@ pub enum Error {
     Internal(String),
     /// A signal stopped the run, and a checkpoint was written. Exit code 5.
     Stopped(String),
+    /// Something is doubtful, and that was asked to be an error; results are kept. Exit code 6.
+    Doubtful(String),
 }
 
 impl Error {
@@ -53,13 +55,14 @@ impl Error {
     }
 
     /// The exit code of the process: 2 scene or command line, 3 no convergence, 4 files, 5 stopped by a signal,
-    /// 1 anything else.
+    /// 6 warnings that are denied, 1 anything else.
     pub fn exit_code(&self) -> i32 {
         match self {
             Self::Scene { .. } | Self::Usage(_) => 2,
             Self::Solver(_) | Self::Domain(_) => 3,
             Self::File { .. } => 4,
             Self::Stopped(_) => 5,
+            Self::Doubtful(_) => 6,
             Self::Mismatch(_) | Self::Internal(_) => 1,
         }
     }
@@ -88,7 +91,8 @@ impl fmt::Display for Error {
             | Self::Domain(text)
             | Self::Mismatch(text)
             | Self::Internal(text)
-            | Self::Stopped(text) => f.write_str(text),
+            | Self::Stopped(text)
+            | Self::Doubtful(text) => f.write_str(text),
         }
     }
 }

@@ -31,3 +31,4 @@ pub mod solve;
 pub mod study;
 pub mod table;
 pub mod verify;
+pub mod warnings;

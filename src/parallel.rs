@@ -76,6 +76,7 @@ fn encode(error: &Error) -> Vec<u8> {
         Error::Mismatch(text) => ("mismatch", vec![text.clone()]),
         Error::Internal(text) => ("internal", vec![text.clone()]),
         Error::Stopped(text) => ("stopped", vec![text.clone()]),
+        Error::Doubtful(text) => ("doubtful", vec![text.clone()]),
     };
     std::iter::once(kind.to_owned()).chain(texts).collect::<Vec<_>>().join("\0").into_bytes()
 }
@@ -93,6 +94,7 @@ fn decode(bytes: &[u8]) -> Error {
         "domain" => Error::Domain(next()),
         "mismatch" => Error::Mismatch(next()),
         "stopped" => Error::Stopped(next()),
+        "doubtful" => Error::Doubtful(next()),
         _ => Error::Internal(next()),
     }
 }
@@ -112,6 +114,7 @@ mod tests {
             Error::Mismatch("m".into()),
             Error::Internal("i".into()),
             Error::Stopped("t".into()),
+            Error::Doubtful("w".into()),
         ] {
             assert_eq!(decode(&encode(&error)), error);
         }

@@ -4,11 +4,12 @@ use std::path::Path;
 
 use mpi::topology::SimpleCommunicator;
 
-use crate::composition::{self, Problem};
-use crate::error::Result;
+use crate::composition::{self, Compliances, Outline, Parts, Problem};
+use crate::error::{Error, Result};
 use crate::output::{HistoryRow, InterfaceFrame};
 use crate::scene::Scene;
 use crate::solve::{BulkFields, Counts, Driver, Observer, Report};
+use crate::warnings::{Doubts, Warning};
 
 /// What a scene came to; the same on all ranks.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +24,8 @@ pub struct Solution {
     pub bulk: Vec<BulkFields>,
     /// What it took.
     pub counts: Counts,
+    /// What is doubtful about it.
+    pub warnings: Vec<Warning>,
 }
 
 /// Solves a scene that needs no other files, on all ranks of `comm`.
@@ -32,21 +35,26 @@ pub fn solve(comm: &SimpleCommunicator, scene: &Scene) -> Result<Solution> {
 
 /// Solves the scene of `file`, beside which its other files are, on all ranks of `comm`.
 pub fn solve_beside(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Solution> {
-    solve_problem(composition::build(comm, scene, file)?)
+    solve_parts(comm, scene, composition::prepare(comm, scene, file)?)
 }
 
 /// Solves a scene on all ranks of `comm`, with the bytes of the .msh file that it names instead of the file.
 pub fn solve_on_mesh(comm: &SimpleCommunicator, scene: &Scene, mesh: &[u8]) -> Result<Solution> {
-    solve_problem(composition::build_on_mesh(comm, scene, mesh)?)
+    solve_parts(comm, scene, composition::prepare_on_mesh(scene, mesh)?)
 }
 
-fn solve_problem(problem: Problem) -> Result<Solution> {
+fn solve_parts(comm: &SimpleCommunicator, scene: &Scene, Parts { mesh, shape }: Parts) -> Result<Solution> {
+    let doubts = Doubts::of(scene, &Outline::of(scene, &mesh), &shape);
+    let problem = composition::assemble(comm, scene, (mesh, shape.profile), &Compliances::default())?;
     let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, mesh } = problem;
     let mut collected = Collected { history: vec![HistoryRow::default()], ends: Vec::new(), bulk: Vec::new() };
     let mut driver = Driver::new(strategy.as_mut(), &mut collected, &phases);
     driver.run(&mut integrator, &mut tangent, &mut u)?;
     let counts = driver.counts();
-    Ok(Solution { x: mesh.face.x, history: collected.history, ends: collected.ends, bulk: collected.bulk, counts })
+    let Collected { history, ends, bulk } = collected;
+    let after = doubts.after(scene, &history);
+    let warnings = doubts.before.into_iter().chain(after).collect();
+    Ok(Solution { x: mesh.face.x, history, ends, bulk, counts, warnings })
 }
 
 impl Solution {
@@ -66,7 +74,7 @@ pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
     let energy = report.problem.energy().unwrap_or_default();
     let mut contact = report.problem.contact()?;
     let totals = contact.totals()?;
-    Ok(HistoryRow {
+    let row = HistoryRow {
         time: report.time,
         phase: report.phase,
         approach: contact.placement.approach,
@@ -81,7 +89,8 @@ pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
         traction_oscillation: totals.traction_oscillation,
         newton_iterations: report.newton,
         energy,
-    })
+    };
+    row.not_finite().map_or(Ok(row), |name| Err(not_finite("history", name, report.time)))
 }
 
 /// The contact face as it is.
@@ -89,7 +98,7 @@ pub fn frame(report: &mut Report<'_>) -> Result<InterfaceFrame> {
     let mut contact = report.problem.contact()?;
     let fields = contact.fields()?;
     let component = |i: usize| contact.surface.displacement.iter().skip(i).step_by(2).copied().collect();
-    Ok(InterfaceFrame {
+    let frame = InterfaceFrame {
         time: report.time,
         pressure: fields.pressure,
         shear: fields.shear,
@@ -97,7 +106,24 @@ pub fn frame(report: &mut Report<'_>) -> Result<InterfaceFrame> {
         slip_rate: fields.slip_rate,
         displacement_x: component(0),
         displacement_z: component(1),
-    })
+    };
+    frame.not_finite().map_or(Ok(()), |name| Err(not_finite("interface", name, report.time)))?;
+    Ok(frame)
+}
+
+/// The fields of the bulk as they are, of this rank's nodes.
+pub fn bulk(report: &mut Report<'_>) -> Result<BulkFields> {
+    let fields = report.problem.bulk_fields(report.u)?;
+    let of = |name, values: &[f64]| values.iter().any(|value| !value.is_finite()).then_some(name);
+    let bad = of("displacement", fields.displacement.as_flattened()).or(of("stress", fields.stress.as_flattened()));
+    bad.map_or(Ok(fields), |name| Err(not_finite("bulk", name, report.time)))
+}
+
+fn not_finite(group: &str, name: &str, time: f64) -> Error {
+    Error::Solver(format!(
+        "/{group}/{name} is not a finite number at t = {time:.6e} s: the numbers of the scene are too large or too small for \
+         what is computed from them"
+    ))
 }
 
 /// The observer that keeps everything.
@@ -114,7 +140,7 @@ impl Observer for Collected {
             self.ends.push(frame(&mut report)?);
         }
         if report.bulk_output {
-            self.bulk.push(report.problem.bulk_fields(report.u)?);
+            self.bulk.push(bulk(&mut report)?);
         }
         Ok(())
     }

@@ -9,7 +9,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use common::msh::write_msh;
-use common::program::{assert_same, ends_with, output_of, program};
+use common::program::{assert_same, ends_with, errors, output_of, program};
 use mpjr::mesh::{Layer, Sides};
 use mpjr::output::{checkpoint, reader::Results};
 
@@ -243,7 +243,7 @@ fn what_cannot_be_resumed_is_refused() {
     assert!(Command::new("kill").arg(child.id().to_string()).status().unwrap().success());
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(5));
-    let message = String::from_utf8_lossy(&output.stderr);
+    let message = errors(&String::from_utf8_lossy(&output.stderr));
     assert!(message.starts_with("mpjr: stopped by a signal at t = ") && message.ends_with("--resume\n"), "{message}");
 
     let message = ends_with(&mut resume(&["phase.slide.velocity=0.2", "material.arms.1.time=6"]), 2);

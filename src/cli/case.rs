@@ -11,7 +11,7 @@ use super::origin::{Begun, Origin};
 use super::progress::Progress;
 use super::record::{Checkpoints, Recording};
 use super::summary::Outcome;
-use crate::composition::{self, Compliances, Problem};
+use crate::composition::{self, Compliances, Outline, Problem};
 use crate::error::{Error, Result};
 use crate::loading::Phase;
 use crate::mesh::Mesh;
@@ -20,6 +20,7 @@ use crate::parallel::agree;
 use crate::petsc::Session;
 use crate::scene::Scene;
 use crate::solve::Driver;
+use crate::warnings::{Doubts, Warning};
 
 /// What to solve, by whom, and where the results go.
 pub struct Job<'a> {
@@ -41,6 +42,8 @@ pub struct Job<'a> {
     pub compliances: &'a Compliances,
     /// Whether the state at the end is kept in the checkpoint, for other runs to go on from.
     pub keep_state: bool,
+    /// Told each warning, on rank 0.
+    pub doubt: &'a dyn Fn(&Warning),
 }
 
 /// What came of it.
@@ -51,6 +54,8 @@ pub struct Done {
     pub outcome: Outcome,
     /// The last row of the history.
     pub last: HistoryRow,
+    /// All warnings, on rank 0.
+    pub warnings: Vec<Warning>,
 }
 
 /// Solves the scene and records it; `progress` is shown where it is not silent. Collective.
@@ -60,14 +65,18 @@ pub struct Done {
 pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<Done> {
     let (comm, scene) = (job.comm, job.scene);
     let (clock, started) = (Instant::now(), SystemTime::now());
-    let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, mesh } =
-        composition::build_reusing(comm, scene, job.file, job.compliances)?;
+    // First what the scene may be refused for.
+    let parts = composition::prepare(comm, scene, job.file)?;
+    let doubts = (comm.rank() == 0).then(|| Doubts::of(scene, &Outline::of(scene, &parts.mesh), &parts.shape));
+    let problem = composition::assemble(comm, scene, (parts.mesh, parts.shape.profile), job.compliances)?;
+    let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, mesh } = problem;
     let begun = job.origin.load(comm, job.out, &phases)?;
     if let Some(begun) = &begun {
         strategy.restore(&begun.snapshot, &mut u)?;
     }
-    let opened = if comm.rank() == 0 { open(job, started, &mesh, &phases, begun.as_ref()).map(Some) } else { Ok(None) };
-    let recorder = agree(comm, opened)?;
+    let open = |doubts: &Doubts| open(job, started, (&mesh, doubts), &phases, begun.as_ref());
+    let recorder = agree(comm, doubts.as_ref().map(open).transpose())?;
+    doubts.iter().flat_map(|doubts| &doubts.before).for_each(job.doubt);
     let started = match (job.origin, &begun) {
         (Origin::Checkpoint, Some(begun)) => begun.started.clone(),
         _ => clock::iso_utc(started),
@@ -99,18 +108,36 @@ pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<
         Err(_) => Status::Stopped,
     };
     let outcome = Outcome { status, ranks: comm.size(), setup, total: clock.elapsed(), counts };
+    recording.end_progress();
+    let mut doubted = Ok(());
+    let mut warnings = Vec::new();
+    if let Some(doubts) = doubts {
+        // A run that goes on later has its say at its end.
+        let after = if status == Status::Stopped { Ok(Vec::new()) } else { recording.doubt(&doubts) };
+        warnings = doubts.before;
+        doubted = after.map(|after| {
+            after.iter().for_each(job.doubt);
+            warnings.extend(after);
+        });
+    }
     let (finished, last) = recording.finish(status);
     // What the solver says comes first; a file that could not be closed matters only when it did its work.
-    let result = result.and(agree(comm, finished));
+    let result = result.and(agree(comm, doubted.and(finished)));
     if result.is_ok() && !job.keep_state && comm.rank() == 0 {
         // It has done its work; one that stays does no harm.
         let _ = checkpoint::remove(job.out);
     }
-    Ok(Done { result, outcome, last })
+    Ok(Done { result, outcome, last, warnings })
 }
 
 /// The recorder of the run, on the rank that writes.
-fn open(job: &Job<'_>, started: SystemTime, mesh: &Mesh, phases: &[Phase], begun: Option<&Begun>) -> Result<Recorder> {
+fn open(
+    job: &Job<'_>,
+    started: SystemTime,
+    (mesh, doubts): (&Mesh, &Doubts),
+    phases: &[Phase],
+    begun: Option<&Begun>,
+) -> Result<Recorder> {
     let scene = job.scene;
     let plan = plan(scene, mesh, phases);
     if let (Origin::Checkpoint, Some(begun)) = (job.origin, begun) {
@@ -125,6 +152,7 @@ fn open(job: &Job<'_>, started: SystemTime, mesh: &Mesh, phases: &[Phase], begun
         petsc_version: job.session.petsc_version(),
         ranks: job.comm.size() as usize,
         started,
+        warnings: doubts.before.iter().map(ToString::to_string).collect(),
     };
     let recorder = Recorder::create(job.out, &metadata, plan, &HistoryRow::default())?;
     // One that is left belongs to the file that was replaced.

@@ -4,6 +4,7 @@ mod case;
 mod check;
 mod fit;
 mod interrupt;
+mod json;
 mod launcher;
 mod material;
 mod origin;
@@ -15,6 +16,7 @@ mod run;
 mod study;
 mod summary;
 mod sweep;
+mod telling;
 mod terminal;
 mod verify;
 
@@ -59,8 +61,8 @@ enum Command {
 }
 
 /// Reads the command line, does what it says, and returns the exit code: 0 done, 2 scene or command line wrong,
-/// 3 no convergence, 4 a file could not be read or written, 5 stopped by a signal, 1 anything else, such as a failed
-/// `verify`.
+/// 3 no convergence, 4 a file could not be read or written, 5 stopped by a signal, 6 warnings that are denied, 1 anything
+/// else, such as a failed `verify`.
 pub fn main() -> i32 {
     end_on_panic();
     let arguments = match Arguments::try_parse() {

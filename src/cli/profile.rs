@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use crate::composition::{Finest, PressedEnd, Shape, Stretch, numbers, seam_doubt};
+use crate::composition::{Finest, Shape, Stretch};
 use crate::profile::profilometer::Measured;
 use crate::scene::{Indenter, Scene};
 
-/// A few lines about the profile over the face, with a sketch, and warnings of what a run would miss.
+/// A few lines about the profile over the face, with a sketch.
 pub fn describe(scene: &Scene, measured: Option<&Measured>, shape: &Shape, face: Stretch) -> String {
     const COLUMNS: usize = 64;
     const ROWS: usize = 4;
@@ -41,10 +41,8 @@ pub fn describe(scene: &Scene, measured: Option<&Measured>, shape: &Shape, face:
         }
         None => {}
     }
-    let seam = measured.and_then(|measured| seam_doubt(scene, &numbers(measured)));
-    let seam = seam.map(|(key, reason)| format!("{key}: {reason}"));
-    for warning in warnings(scene, shape, face).into_iter().chain(seam) {
-        let _ = write!(text, "\nwarning:       {warning}");
+    if low.abs() > 1e-3 * (high - low) {
+        let _ = write!(text, "\n               its lowest point touches at an approach of {low:.3e} m");
     }
     text
 }
@@ -59,39 +57,4 @@ fn name(indenter: &Indenter) -> String {
         Indenter::Sampled { file, .. } => format!("sampled {file:?}"),
         Indenter::Rough { seed, .. } => format!("rough, seed {seed}"),
     }
-}
-
-/// What the mesh does not see of the profile, and contact that is not where one expects it.
-fn warnings(scene: &Scene, shape: &Shape, face: Stretch) -> Vec<String> {
-    const FEWEST: f64 = 4.0;
-    let cell = face.cell();
-    let mut list = Vec::new();
-    match shape.finest {
-        Some(Finest::Wavelength(length)) if length / cell < FEWEST * (1.0 - 1e-9) => list.push(format!(
-            "fewer than {FEWEST} cells to the shortest wave: the mesh sees another profile; give at least {:.0} cells",
-            (FEWEST * face.width() / length).ceil()
-        )),
-        Some(Finest::Spacing(length)) if cell > length * (1.0 + 1e-6) => list.push(format!(
-            "the file is finer than the mesh: nodes are {cell:.3e} m apart, sampling points {length:.3e} m"
-        )),
-        _ => {}
-    }
-    let [low, high] = shape.survey.range();
-    if low.abs() > 1e-3 * (high - low) {
-        list.push(match low < 0.0 {
-            true => format!("the profile reaches below 0: contact begins already at an approach of {low:.3e} m"),
-            false => format!("the profile stays above 0: contact begins only at an approach of {low:.3e} m"),
-        });
-    }
-    let deepest = scene.deepest();
-    if deepest <= low {
-        list.push(format!("the indenter never touches the face where it starts: its approach ends at {deepest:.3e} m"));
-    }
-    if let Some(PressedEnd { x, time }) = shape.pressed {
-        list.push(format!(
-            "from t = {time:.4e} s the indenter presses on the clamped end of the face at x = {x:?} m, which cannot give \
-             way: N grows with the penalty there"
-        ));
-    }
-    list
 }

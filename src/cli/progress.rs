@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::sweep::claim::Claim;
-use super::terminal::tell;
+use super::terminal::{is_quiet, tell};
 
 /// Plain lines come no closer than this, but for the ends of phases.
 const LINE_EVERY: Duration = Duration::from_secs(5);
@@ -107,9 +107,12 @@ impl Progress {
     }
 }
 
-/// Where a bar can be drawn: standard error when it is a terminal; under Open MPI's mpirun, which gives its children a
+/// Where a bar can be drawn, unless nothing is to be told: standard error when it is a terminal; under Open MPI's mpirun, which gives its children a
 /// pseudo-terminal as standard output in any case, that output when mpirun's own is a terminal.
 pub fn terminal() -> Option<ProgressDrawTarget> {
+    if is_quiet() {
+        return None;
+    }
     if std::io::stderr().is_terminal() {
         return Some(ProgressDrawTarget::stderr());
     }

@@ -17,6 +17,7 @@ use crate::scene::Scene;
 use crate::snapshot::Snapshot;
 use crate::solution;
 use crate::solve::{Counts, Observer, Report, TransientProblem};
+use crate::warnings::{Doubts, Warning};
 
 /// The observer of a run; only rank 0 has a recorder.
 pub struct Recording<'a> {
@@ -104,11 +105,25 @@ impl<'a> Recording<'a> {
         agree(self.world, mine)
     }
 
+    /// Adds to the file, and gives, what its history says besides the doubts that there were before; on the rank that
+    /// writes.
+    pub fn doubt(&self, doubts: &Doubts) -> Result<Vec<Warning>> {
+        let Some(recorder) = &self.recorder else { return Ok(Vec::new()) };
+        let after = doubts.after(self.scene, &recorder.rows()?);
+        let all: Vec<String> = doubts.before.iter().chain(&after).map(ToString::to_string).collect();
+        recorder.set_warnings(&all)?;
+        Ok(after)
+    }
+
     /// Closes the file with `status`; also gives the last row of the history.
     pub fn finish(self, status: Status) -> (Result<()>, HistoryRow) {
-        self.progress.finish();
         let closed = self.recorder.map_or(Ok(()), |recorder| recorder.finish(status));
         (closed, self.last)
+    }
+
+    /// Leaves the terminal as it was.
+    pub fn end_progress(&self) {
+        self.progress.finish();
     }
 
     /// The step's row of the history, and its interface profile where one is due.
@@ -139,7 +154,7 @@ impl Observer for Recording<'_> {
         let mine = self.record(&mut report);
         agree(self.world, mine)?;
         if report.bulk_output {
-            let fields = report.problem.bulk_fields(report.u)?;
+            let fields = agree(self.world, solution::bulk(&mut report))?;
             let frame = Frame {
                 time: report.time,
                 nodes: &fields.nodes,

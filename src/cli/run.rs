@@ -10,13 +10,15 @@ use super::case::{self, Job};
 use super::interrupt::Interrupt;
 use super::origin::{self, Origin};
 use super::progress::Progress;
-use super::summary;
-use super::terminal::tell;
+use super::telling::Telling;
+use super::terminal::{answer, doubt, tell};
+use super::{json, summary};
 use crate::composition::Compliances;
 use crate::error::{Error, Result};
 use crate::parallel::{agree, share_text};
 use crate::petsc::Session;
 use crate::scene::{self, Source};
+use crate::warnings::Warning;
 
 /// The arguments of `mpjr run`.
 #[derive(Args)]
@@ -35,6 +37,11 @@ pub struct RunArguments {
     /// Begin anew where a run was stopped, and drop what it had come to
     #[arg(long, conflicts_with = "resume")]
     restart: bool,
+    /// Print the summary as one JSON object on standard output, and nothing else there
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    telling: Telling,
     /// PETSc options, such as -ksp_type gmres -pc_type gamg
     #[arg(last = true, value_name = "PETSC OPTIONS")]
     petsc: Vec<String>,
@@ -42,6 +49,7 @@ pub struct RunArguments {
 
 /// Solves the scene on all ranks of the launcher.
 pub fn run(arguments: &RunArguments) -> Result<()> {
+    arguments.telling.begin(arguments.json);
     let interrupt = Interrupt::watch()?;
     super::in_session(&arguments.petsc, |session, world| solve((session, world), &interrupt, arguments))
 }
@@ -83,18 +91,26 @@ fn solve(
         origin,
         compliances: &Compliances::default(),
         keep_state: false,
+        doubt: &doubt,
     };
     let done = case::solve(&job, |steps| Progress::new(steps, world.rank() == 0))?;
     if world.rank() == 0 {
-        tell(summary::outcome(&scene, &done.outcome, &done.last));
         for option in session.unused_options() {
-            tell(format_args!("warning:       PETSc option -{option} was never asked for: is it misspelt?"));
+            doubt(&Warning::new(format!("-{option}"), "this PETSc option was never asked for; is it misspelt?"));
         }
+        tell(summary::outcome(&scene, &done));
         tell(format_args!("results:       {}", out.display()));
+        if arguments.json {
+            answer(json::outcome(&scene, &done, &out));
+        }
     }
-    done.result.map_err(|error| match error {
+    let judged = done.result.and_then(|()| arguments.telling.judge_together(world, done.warnings.len()));
+    judged.map_err(|error| match error {
         Error::Solver(text) => {
             Error::Solver(format!("{}: {text}; {} holds the results up to there", file.display(), out.display()))
+        }
+        Error::Doubtful(text) => {
+            Error::Doubtful(format!("{}: {text}; {} holds the results", file.display(), out.display()))
         }
         other => other,
     })

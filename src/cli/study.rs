@@ -9,6 +9,7 @@ use toml::{Table, Value};
 
 use super::summary::seconds;
 use super::sweep::{line, replace};
+use super::telling::Telling;
 use super::terminal;
 use crate::error::{Error, Result};
 use crate::output::ours;
@@ -36,6 +37,8 @@ pub struct StudyArguments {
     /// Where the tables and the figure go, made if need be [default: the scene's stem + -study; with --error nowhere]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    telling: Telling,
 }
 
 /// The errors that are advised on.
@@ -46,6 +49,7 @@ pub fn run(arguments: &StudyArguments) -> Result<()> {
     if let Some(error) = arguments.error.filter(|error| !(*error > 0.0 && *error < 1.0)) {
         return Err(Error::Usage(format!("--error {error}: must be above 0 and below 1, such as 0.01 for 1 %")));
     }
+    arguments.telling.begin(false);
     super::in_session(&[], |_, world| climb(world, arguments))
 }
 
@@ -82,6 +86,10 @@ fn climb(world: &SimpleCommunicator, arguments: &StudyArguments) -> Result<()> {
     let Some(base) = solver.run(&[])? else {
         return Err(Error::Solver(format!("{}: cannot be studied as it is: {}", file.display(), solver.reason())));
     };
+    let doubtful = base.warnings.len();
+    if tells {
+        base.warnings.iter().for_each(terminal::doubt);
+    }
     let mut findings = Findings { file, base, climbed: Vec::new(), advised: Vec::new(), error: None };
     // What is found is kept at once: the finest rungs all together may take long, or be too much.
     for ladder in ladders {
@@ -114,9 +122,9 @@ fn climb(world: &SimpleCommunicator, arguments: &StudyArguments) -> Result<()> {
     match (arguments.error, findings.advised.first()) {
         (Some(_), Some(Some(advice))) => {
             if tells {
-                terminal::tell(options(&advice.changes));
+                terminal::answer(options(&advice.changes));
             }
-            Ok(())
+            arguments.telling.judge(doubtful)
         }
         (Some(error), _) => Err(Error::Usage(format!(
             "--error {error}: no setting on these ladders meets it (the finest leave about {:.1e}); give finer ones with --vary",
@@ -126,7 +134,7 @@ fn climb(world: &SimpleCommunicator, arguments: &StudyArguments) -> Result<()> {
             if let (true, Some(out)) = (tells, &out) {
                 terminal::tell(format_args!("tables and figure: {}", out.display()));
             }
-            Ok(())
+            arguments.telling.judge(doubtful)
         }
     }
 }

@@ -3,10 +3,11 @@
 use std::fmt::Write;
 use std::time::Duration;
 
+use super::case::Done;
 use super::material;
 use crate::composition::{self, Estimate, Form, Outline, Stretch, augmentations};
 use crate::energy::Energy;
-use crate::output::{HistoryRow, Status};
+use crate::output::Status;
 use crate::petsc;
 use crate::scene::{Friction, Method, Penalty, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
 use crate::solve::{Counts, Work};
@@ -124,13 +125,9 @@ fn extent(scene: &Scene, outline: &Outline) -> String {
         return format!("{} x {} cells, {sides} sides", layer.cells[0], layer.cells[1]);
     }
     let [quadrilaterals, triangles] = outline.cells;
-    let lock = match triangles > 0 && scene.materials.iter().any(|material| material.poisson_ratio > 0.45) {
-        true => " (they lock near a Poisson ratio of 0.5)",
-        false => "",
-    };
     let Stretch { from, to, edges, .. } = outline.face;
     format!(
-        "{quadrilaterals} quadrilaterals, {triangles} triangles{lock}; contact face of\n{:15}{edges} edges from x = \
+        "{quadrilaterals} quadrilaterals, {triangles} triangles; contact face of\n{:15}{edges} edges from x = \
          {from:.6} to {to:.6} m",
         ""
     )
@@ -150,9 +147,9 @@ pub struct Outcome {
     pub counts: Counts,
 }
 
-/// What `mpjr run` prints at the end; `last` is the last row of the history.
-pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
-    let Outcome { status, ranks, setup, total, counts } = outcome;
+/// What `mpjr run` prints at the end.
+pub fn outcome(scene: &Scene, done: &Done) -> String {
+    let Done { outcome: Outcome { status, ranks, setup, total, counts }, last, warnings, .. } = done;
     let (yes, no) = modelled(scene);
     let blas = match petsc::blas_library() {
         "reference" => "the reference (OpenBLAS is faster: Debian's libopenblas0-pthread)",
@@ -177,6 +174,7 @@ pub fn outcome(scene: &Scene, outcome: &Outcome, last: &HistoryRow) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{:<15}{} at t = {:.6} s", "status:", status.as_str(), last.time);
+    let _ = writeln!(text, "{:<15}{}", "warnings:", warnings.len());
     let _ = writeln!(text, "{:<15}{}", "modelled:", yes.join("\n               "));
     let _ = writeln!(text, "{:<15}{}", "not modelled:", no.join("\n               "));
     text += &material::lines(scene);

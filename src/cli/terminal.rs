@@ -7,14 +7,36 @@ use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::error::{Error, Result};
+use crate::warnings::Warning;
 
 /// Why standard output takes no more.
 static FAILURE: OnceLock<io::Error> = OnceLock::new();
 
-/// Prints lines on standard output; the last one need not end.
+/// Whether only errors and warnings are printed, and what was asked for.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// From now on [`tell`] tells nothing.
+pub fn be_quiet() {
+    QUIET.store(true, Ordering::Relaxed);
+}
+
+/// Whether [`tell`] tells nothing.
+pub fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// Prints lines on standard output, unless it is to be quiet; the last one need not end.
 pub fn tell(text: impl Display) {
+    if !is_quiet() {
+        answer(text);
+    }
+}
+
+/// Prints what was asked for on standard output, quiet or not.
+pub fn answer(text: impl Display) {
     if FAILURE.get().is_some() {
         return;
     }
@@ -31,6 +53,12 @@ pub fn tell(text: impl Display) {
 pub fn warn(text: impl Display) {
     // There is nobody left to tell when even this cannot be written.
     let _ = writeln!(io::stderr(), "mpjr: {text}");
+}
+
+/// Prints a warning about a scene or its results on standard error.
+pub fn doubt(warning: &Warning) {
+    // As for an error.
+    let _ = writeln!(io::stderr(), "warning: {warning}");
 }
 
 /// Whether all that was told was written, or a reader went away.

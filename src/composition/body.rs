@@ -33,7 +33,7 @@ pub fn mesh(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Mes
 }
 
 /// What a scene's body is, as far as it is known without a solver. A layer's mesh is not made for it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Outline {
     /// Its contact face.
     pub face: Stretch,
@@ -43,6 +43,11 @@ pub struct Outline {
     pub cells: [usize; 2],
     /// Of the contact, Pa/m, where the mesh decides it.
     pub penalty: Option<f64>,
+    /// From the lowest point to the highest of the contact face, m.
+    pub height: f64,
+    /// Of the nodes of a mesh's face, x and the depth below the highest one, m; none for a layer, whose face is flat and
+    /// evenly divided.
+    pub nodes: Vec<[f64; 2]>,
 }
 
 /// The contact face along x.
@@ -63,26 +68,39 @@ pub struct Stretch {
 /// What the body of the scene at `file` is; a .msh file is read by this process.
 pub fn outline(scene: &Scene, file: &Path) -> Result<Outline> {
     match &scene.body {
-        scene::Body::Layer(layer) => Ok(Outline {
-            face: Stretch::of_layer(layer),
-            unknowns: layer.unknowns(),
-            cells: [layer.cells[0] * layer.cells[1], 0],
-            penalty: None,
-        }),
-        scene::Body::Mesh(mesh) => {
-            let mesh = file_mesh(&bytes(mesh)?, mesh, scene, file)?;
-            let penalty = scene.contact.penalty.stiffness().is_none().then(|| penalty(scene, &mesh));
-            Ok(Outline { penalty, ..Outline::of(scene, &mesh) })
-        }
+        scene::Body::Layer(layer) => Ok(Outline::of_layer(layer)),
+        scene::Body::Mesh(mesh) => Ok(Outline::of_mesh(scene, &file_mesh(&bytes(mesh)?, mesh, scene, file)?)),
     }
 }
 
 impl Outline {
-    /// That of a mesh that is there, without the penalty.
-    pub(super) fn of(scene: &Scene, mesh: &Mesh) -> Self {
+    /// What the scene's body is, whose mesh is `mesh`.
+    pub fn of(scene: &Scene, mesh: &Mesh) -> Self {
+        scene.layer().map_or_else(|| Self::of_mesh(scene, mesh), Self::of_layer)
+    }
+
+    fn of_layer(layer: &scene::Layer) -> Self {
+        Self {
+            face: Stretch::of_layer(layer),
+            unknowns: layer.unknowns(),
+            cells: [layer.cells[0] * layer.cells[1], 0],
+            penalty: None,
+            height: layer.depth,
+            nodes: Vec::new(),
+        }
+    }
+
+    fn of_mesh(scene: &Scene, mesh: &Mesh) -> Self {
         let triangles = mesh.cells.iter().filter(|cell| matches!(cell, Cell::Triangle(_))).count();
-        let cells = [mesh.cells.len() - triangles, triangles];
-        Self { face: Stretch::of(scene, mesh), unknowns: mesh.free_components(), cells, penalty: None }
+        let face = &mesh.face;
+        Self {
+            face: Stretch::of(scene, mesh),
+            unknowns: mesh.free_components(),
+            cells: [mesh.cells.len() - triangles, triangles],
+            penalty: scene.contact.penalty.stiffness().is_none().then(|| penalty(scene, mesh)),
+            height: height(mesh),
+            nodes: face.x.iter().zip(&face.recess).map(|(x, recess)| [*x, *recess]).collect(),
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Stretch, phases};
+use super::{Stretch, course, phases};
 use crate::error::{Error, Result};
 use crate::expression::Expression;
 use crate::input;
@@ -23,6 +23,10 @@ pub struct Shape {
     pub finest: Option<Finest>,
     /// What the scene does not say: "1024 points, ...".
     pub detail: Option<String>,
+    /// What unit a file read as m looks like, in words.
+    pub unit: Option<String>,
+    /// What is doubtful of a file that repeats: see [`seam_doubt`].
+    pub seam: Option<(&'static str, String)>,
     /// The profile over the face before it slides.
     pub survey: Survey,
     /// Where the indenter first presses on what cannot give way.
@@ -106,7 +110,7 @@ pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], face: Stretch) -> R
         false => profile,
     };
     let wrong = |key: &str, reason: String| Error::scene(file, format!("indenter.{key}"), reason);
-    let (mut finest, mut detail) = (None, None);
+    let (mut finest, mut detail, mut unit, mut seam) = (None, None, None, None);
     let profile: Box<dyn Profile> = match scene.indenter {
         Indenter::Harmonic { amplitude, wavelength } => {
             finest = Some(Finest::Wavelength(wavelength));
@@ -128,6 +132,8 @@ pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], face: Stretch) -> R
             let (count, span) = (points.len(), points[points.len() - 1].x - points[0].x);
             let profile = sampled(points, (scene, file), face)?;
             finest = Some(Finest::Spacing(span / (count - 1) as f64));
+            unit = looks_like(scene, span, face);
+            seam = seam_doubt(scene, elevations);
             detail = Some(format!("{count} points over {span:?} m{}", repetition(&profile, scene)));
             Box::new(profile)
         }
@@ -152,7 +158,7 @@ pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], face: Stretch) -> R
         );
         return Err(Error::scene(file, "contact.method", reason));
     }
-    Ok(Shape { profile, finest, detail, survey, pressed })
+    Ok(Shape { profile, finest, detail, unit, seam, survey, pressed })
 }
 
 /// Where and when the indenter first presses on a clamped end of the face, as far as planned steps can tell.
@@ -189,11 +195,11 @@ fn survey(profile: &dyn Profile, face: Stretch) -> Result<Survey> {
 
 /// The stretch of the profile, m, that the face meets over the whole history; under periodic sides one period is all
 /// there is.
-fn reach(scene: &Scene, face: Stretch) -> [f64; 2] {
+pub fn reach(scene: &Scene, face: Stretch) -> [f64; 2] {
     if face.periodic {
         return [face.from, face.to];
     }
-    let ranges = phases(scene, 0.0).iter().map(|phase| phase.sliding_range()).collect::<Vec<_>>();
+    let ranges = course(scene).iter().map(|phase| phase.sliding_range()).collect::<Vec<_>>();
     let least = ranges.iter().map(|range| range[0]).fold(0.0, f64::min);
     let greatest = ranges.iter().map(|range| range[1]).fold(0.0, f64::max);
     [face.from - greatest, face.to - least]

@@ -56,10 +56,10 @@ pub struct InterfaceFrame {
     pub displacement_z: Vec<f64>,
 }
 
-/// How a history column gets its number out of a row; also the type it has in the file (float64 or int64).
+/// Where a history column has its number in a row; also the type it has in the file (float64 or int64).
 pub(super) enum Value {
-    Real(fn(&HistoryRow) -> f64),
-    Count(fn(&HistoryRow) -> usize),
+    Real(fn(&mut HistoryRow) -> &mut f64),
+    Count(fn(&mut HistoryRow) -> &mut usize),
 }
 
 /// A column of the history.
@@ -74,47 +74,70 @@ const fn real(
     name: &'static str,
     units: &'static str,
     long_name: &'static str,
-    value: fn(&HistoryRow) -> f64,
+    value: fn(&mut HistoryRow) -> &mut f64,
 ) -> Column {
     Column { name, units, long_name, value: Value::Real(value) }
 }
 
-const fn count(name: &'static str, long_name: &'static str, value: fn(&HistoryRow) -> usize) -> Column {
+const fn count(name: &'static str, long_name: &'static str, value: fn(&mut HistoryRow) -> &mut usize) -> Column {
     Column { name, units: "1", long_name, value: Value::Count(value) }
 }
 
 /// The columns of `/history`. `time` is the last: the lengths reach the file in this order (see [`super`]).
 #[rustfmt::skip]
 pub(super) const HISTORY: &[Column] = &[
-    count("phase", "index of the phase, see the attribute names", |r| r.phase),
-    real("approach", "m", "imposed normal approach of the indenter", |r| r.approach),
-    real("sliding", "m", "imposed tangential displacement of the indenter", |r| r.sliding),
-    real("normal_force", "N/m", "normal force per unit thickness, compression positive", |r| r.normal_force),
-    real("tangential_force", "N/m", "tangential force on the layer per unit thickness, positive along +x", |r| r.tangential_force),
-    real("hysteretic_force", "N/m", "integral of pressure times slope of the profile, per unit thickness", |r| r.hysteretic_force),
-    real("contact_fraction", "1", "share of the contact face in contact", |r| r.contact_fraction),
-    real("stick_fraction", "1", "share of the contact that sticks", |r| r.stick_fraction),
-    real("max_penetration", "m", "largest penetration", |r| r.max_penetration),
-    real("stuck_slip", "m", "largest slip of a point since it began to stick, which the regularisation lets it do", |r| r.stuck_slip),
-    real("traction_oscillation", "1", "node-to-node oscillation of the tractions over their rms, 1 = a checkerboard", |r| r.traction_oscillation),
-    count("newton_iterations", "Newton iterations of the step", |r| r.newton_iterations),
-    real("time", "s", "time", |r| r.time),
+    count("phase", "index of the phase, see the attribute names", |r| &mut r.phase),
+    real("approach", "m", "imposed normal approach of the indenter", |r| &mut r.approach),
+    real("sliding", "m", "imposed tangential displacement of the indenter", |r| &mut r.sliding),
+    real("normal_force", "N/m", "normal force per unit thickness, compression positive", |r| &mut r.normal_force),
+    real("tangential_force", "N/m", "tangential force on the layer per unit thickness, positive along +x", |r| &mut r.tangential_force),
+    real("hysteretic_force", "N/m", "integral of pressure times slope of the profile, per unit thickness", |r| &mut r.hysteretic_force),
+    real("contact_fraction", "1", "share of the contact face in contact", |r| &mut r.contact_fraction),
+    real("stick_fraction", "1", "share of the contact that sticks", |r| &mut r.stick_fraction),
+    real("max_penetration", "m", "largest penetration", |r| &mut r.max_penetration),
+    real("stuck_slip", "m", "largest slip of a point since it began to stick, which the regularisation lets it do", |r| &mut r.stuck_slip),
+    real("traction_oscillation", "1", "node-to-node oscillation of the tractions over their rms, 1 = a checkerboard", |r| &mut r.traction_oscillation),
+    count("newton_iterations", "Newton iterations of the step", |r| &mut r.newton_iterations),
+    real("time", "s", "time", |r| &mut r.time),
 ];
 
 /// The columns of `/history/energy`, present when the energy balance is recorded.
 #[rustfmt::skip]
 pub(super) const ENERGY: &[Column] = &[
-    real("energy/external_work", "J/m", "work of the indenter since t = 0", |r| r.energy.external_work),
-    real("energy/stored", "J/m", "energy stored in the springs of the layer", |r| r.energy.stored),
-    real("energy/viscoelastic_dissipation", "J/m", "energy dissipated in the Prony arms since t = 0", |r| r.energy.viscoelastic_dissipation),
-    real("energy/friction_dissipation", "J/m", "energy dissipated by friction since t = 0", |r| r.energy.friction_dissipation),
-    real("energy/penalty", "J/m", "energy stored in the penalty", |r| r.energy.penalty),
-    real("energy/imbalance", "J/m", "work less stored and dissipated energy", |r| r.energy.imbalance),
+    real("energy/external_work", "J/m", "work of the indenter since t = 0", |r| &mut r.energy.external_work),
+    real("energy/stored", "J/m", "energy stored in the springs of the layer", |r| &mut r.energy.stored),
+    real("energy/viscoelastic_dissipation", "J/m", "energy dissipated in the Prony arms since t = 0", |r| &mut r.energy.viscoelastic_dissipation),
+    real("energy/friction_dissipation", "J/m", "energy dissipated by friction since t = 0", |r| &mut r.energy.friction_dissipation),
+    real("energy/penalty", "J/m", "energy stored in the penalty", |r| &mut r.energy.penalty),
+    real("energy/imbalance", "J/m", "work less stored and dissipated energy", |r| &mut r.energy.imbalance),
 ];
 
 /// All history columns of a run, `time` last.
 pub(super) fn history(energy: bool) -> impl Iterator<Item = &'static Column> {
     ENERGY.iter().filter(move |_| energy).chain(HISTORY)
+}
+
+impl HistoryRow {
+    /// The names of the columns, as under `/history`, and its numbers.
+    pub fn values(mut self, energy: bool) -> impl Iterator<Item = (&'static str, f64)> {
+        history(energy).map(move |column| match column.value {
+            Value::Real(of) => (column.name, *of(&mut self)),
+            Value::Count(of) => (column.name, *of(&mut self) as f64),
+        })
+    }
+
+    /// The first column whose number is not finite.
+    pub fn not_finite(self) -> Option<&'static str> {
+        self.values(true).find(|(_, value)| !value.is_finite()).map(|(name, _)| name)
+    }
+}
+
+impl InterfaceFrame {
+    /// The first field with a number that is not finite.
+    pub fn not_finite(&self) -> Option<&'static str> {
+        let bad = |field: &&Field| (field.values)(self).iter().any(|value| !value.is_finite());
+        INTERFACE.iter().find(bad).map(|field| field.name)
+    }
 }
 
 /// A field on the contact face, k x m.

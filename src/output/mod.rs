@@ -20,7 +20,8 @@
 //! The file is at all times one that the library itself could have written. No handle stays open and no lock is
 //! held, so it can be read while the run goes on.
 //!
-//! When more rows come than were planned, the file is copied, extended and renamed into place.
+//! When more rows come than were planned, the file is copied, extended and renamed into place. So it is when the history gives
+//! warnings at the end of a run.
 
 pub mod bulk;
 pub mod checkpoint;
@@ -86,6 +87,8 @@ pub struct Metadata {
     pub ranks: usize,
     /// When the run started; `wall_seconds` counts from here.
     pub started: SystemTime,
+    /// What is doubtful before it, each as `KEY: text`.
+    pub warnings: Vec<String>,
 }
 
 /// What is going to be recorded. Numbers of rows are estimates: generous ones cost no disk space, short ones cost a

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use hdf5::types::VarLenUnicode;
 
+use super::HistoryRow;
+use super::columns::{self, Value};
 use crate::error::{Error, Result};
 use crate::input;
 
@@ -69,6 +71,18 @@ impl Results {
         value.map_err(|error| self.missing(&format!("attribute {name}"), &error))
     }
 
+    /// What was found doubtful, each as `KEY: text`.
+    pub fn warnings(&self) -> Result<Vec<String>> {
+        let read = || -> hdf5::Result<Vec<String>> {
+            let attribute = self.file.attr("warnings")?;
+            match attribute.size() {
+                0 => Ok(Vec::new()),
+                _ => Ok(attribute.read_raw::<VarLenUnicode>()?.iter().map(ToString::to_string).collect()),
+            }
+        };
+        read().map_err(|error| self.missing("attribute warnings", &error))
+    }
+
     /// The names of the phases.
     pub fn phase_names(&self) -> Result<Vec<String>> {
         let names =
@@ -88,6 +102,22 @@ impl Results {
         let mut values = self.field(&format!("history/{column}"))?.values;
         values.truncate(rows);
         Ok(values)
+    }
+
+    /// The whole history, with the energies where the run kept them.
+    pub fn rows(&self, energy: bool) -> Result<Vec<HistoryRow>> {
+        let mut rows = Vec::new();
+        for column in columns::history(energy) {
+            let values = self.history(column.name)?;
+            rows.resize(values.len(), HistoryRow::default());
+            for (row, value) in rows.iter_mut().zip(values) {
+                match column.value {
+                    Value::Real(of) => *of(row) = value,
+                    Value::Count(of) => *of(row) = value as usize,
+                }
+            }
+        }
+        Ok(rows)
     }
 
     /// A field on the contact face: `pressure`, ... (k x m) or `time`, `x` (one column). As many rows as there are

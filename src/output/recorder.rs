@@ -139,6 +139,27 @@ impl Recorder {
         Ok(store.committed())
     }
 
+    /// Sets the attribute `warnings`, where it does not have these yet. The file is copied for it.
+    pub fn set_warnings(&self, warnings: &[String]) -> Result<()> {
+        let mut state = self.shared.lock();
+        state.check()?;
+        state.flush()?;
+        if Results::open(state.store.path()).and_then(|results| results.warnings()).is_ok_and(|there| there == warnings)
+        {
+            return Ok(());
+        }
+        state.store = state.store.with_warnings(warnings)?;
+        Ok(())
+    }
+
+    /// All rows of the history so far.
+    pub fn rows(&self) -> Result<Vec<HistoryRow>> {
+        let mut state = self.shared.lock();
+        state.check()?;
+        state.flush()?;
+        Results::open(state.store.path())?.rows(state.plan.energy)
+    }
+
     /// Writes what is left and how the run ended. Without this call the file says "stopped".
     pub fn finish(self, status: Status) -> Result<()> {
         let mut state = self.shared.lock();
@@ -222,11 +243,11 @@ impl State {
         self.make_room(Table::Interface, self.interface.len())?;
         let file = self.store.open()?;
         let [mut history, mut interface] = [0_u64; 2];
-        for (ahead, row) in self.history.iter().enumerate() {
+        for (ahead, mut row) in self.history.iter().copied().enumerate() {
             let values: Vec<[u8; 8]> = columns::history(self.plan.energy)
                 .map(|column| match column.value {
-                    Value::Real(get) => get(row).to_ne_bytes(),
-                    Value::Count(get) => (get(row) as i64).to_ne_bytes(),
+                    Value::Real(of) => of(&mut row).to_ne_bytes(),
+                    Value::Count(of) => (*of(&mut row) as i64).to_ne_bytes(),
                 })
                 .collect();
             let values: Vec<&[u8]> = values.iter().map(|value| value.as_slice()).collect();

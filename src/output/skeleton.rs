@@ -68,6 +68,7 @@ fn root_attributes(file: &hdf5::File, metadata: &Metadata) -> hdf5::Result<()> {
     text(file, "units", "SI")?;
     attribute::<i64>(file, "mpi_ranks")?.write_scalar(&(metadata.ranks as i64))?;
     attribute::<f64>(file, "wall_seconds")?.write_scalar(&0.0)?;
+    texts(file, "warnings", &metadata.warnings)?;
     // A killed run is one that was stopped. The end of a run points `status` at another of `status_values`.
     text(file, "status", Status::Stopped.as_str())?;
     texts(file, "status_values", &Status::ALL.map(Status::as_str))
@@ -165,10 +166,11 @@ fn text(object: &Location, name: &str, value: &str) -> hdf5::Result<()> {
 }
 
 /// A one-dimensional attribute of strings.
-fn texts<S: AsRef<str>>(object: &Location, name: &str, values: &[S]) -> hdf5::Result<()> {
+pub(super) fn texts<S: AsRef<str>>(object: &Location, name: &str, values: &[S]) -> hdf5::Result<()> {
     let values = values.iter().map(|value| unicode(value.as_ref())).collect::<hdf5::Result<Vec<_>>>()?;
     let shaped = object.new_attr::<VarLenUnicode>().char_encoding(CharEncoding::Ascii).shape(values.len());
-    shaped.create(name)?.write_raw(&values)
+    let attribute = shaped.create(name)?;
+    if values.is_empty() { Ok(()) } else { attribute.write_raw(&values) }
 }
 
 fn unicode(value: &str) -> hdf5::Result<VarLenUnicode> {

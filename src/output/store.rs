@@ -6,7 +6,7 @@ use std::os::unix::fs::{FileExt, MetadataExt};
 use std::path::{Path, PathBuf};
 
 use super::columns::{self, BULK, INTERFACE};
-use super::{Plan, Rows, Status, locate};
+use super::{Plan, Rows, Status, locate, skeleton};
 use crate::checksum::row_sum;
 use crate::error::{Error, Result};
 use crate::petsc::object_address::object_address;
@@ -247,49 +247,71 @@ impl Store {
         file.write_all_at(reference, self.status_at).map_err(|error| failed(&self.path, error))
     }
 
-    /// The same file with room for twice the rows of `table`, which must be full. The file is copied, extended by the
-    /// library and put in the place of the old one by a rename, so that at every moment one of the two is there.
+    /// The same file with room for twice the rows of `table`, which must be full.
     pub(super) fn grown(&self, table: Table) -> Result<Self> {
-        let scratch = super::ours::scratch(&self.path);
-        let grown = self.extended_copy(table, &scratch);
-        if grown.is_err() {
-            // The error at hand says more than one about a leftover.
-            let _ = std::fs::remove_file(&scratch);
-        }
-        grown
-    }
-
-    fn extended_copy(&self, table: Table, scratch: &Path) -> Result<Self> {
-        // Checks that the file at the path is ours before its copy takes that place.
-        drop(self.open()?);
-        std::fs::copy(&self.path, scratch).map_err(|error| failed(&self.path, error))?;
         let capacity = self.capacity(table);
-        let extend = || -> hdf5::Result<()> {
-            let file = hdf5::File::with_options().with_fapl(|access| access.libver_earliest()).open_rw(scratch)?;
-            for series in &self.tables[table as usize].0 {
+        let extend = |file: &hdf5::File| {
+            self.tables[table as usize].0.iter().try_for_each(|series| {
                 let set = file.dataset(&series.name)?;
                 let mut shape = set.shape();
                 if let Some(rows) = shape.first_mut() {
                     *rows = (2 * capacity).next_multiple_of(series.chunk_rows);
                 }
-                set.resize(shape)?;
+                set.resize(shape)
+            })
+        };
+        self.changed("make room for more rows", &extend)
+    }
+
+    /// The same file with these texts as the attribute `warnings`.
+    pub(super) fn with_warnings(&self, warnings: &[String]) -> Result<Self> {
+        let replace = |file: &hdf5::File| {
+            if file.attr("warnings").is_ok() {
+                file.delete_attr("warnings")?;
             }
+            skeleton::texts(file, "warnings", warnings)
+        };
+        self.changed("take warnings", &replace)
+    }
+
+    /// The same file after a change by the library, for which the file is copied and put in the place of the old one by
+    /// a rename, so that at every moment one of the two is there.
+    fn changed(&self, what: &str, change: &dyn Fn(&hdf5::File) -> hdf5::Result<()>) -> Result<Self> {
+        let scratch = super::ours::scratch(&self.path);
+        let changed = self.changed_copy(what, change, &scratch);
+        if changed.is_err() {
+            // The error at hand says more than one about a leftover.
+            let _ = std::fs::remove_file(&scratch);
+        }
+        changed
+    }
+
+    fn changed_copy(
+        &self,
+        what: &str,
+        change: &dyn Fn(&hdf5::File) -> hdf5::Result<()>,
+        scratch: &Path,
+    ) -> Result<Self> {
+        // Checks that the file at the path is ours before its copy takes that place.
+        drop(self.open()?);
+        std::fs::copy(&self.path, scratch).map_err(|error| failed(&self.path, error))?;
+        let work = || -> hdf5::Result<()> {
+            let file = hdf5::File::with_options().with_fapl(|access| access.libver_earliest()).open_rw(scratch)?;
+            change(&file)?;
             file.close()
         };
-        extend().map_err(|error| {
-            Error::file(&self.path, format!("cannot make room for more rows: {}", super::plain(&error)))
-        })?;
+        work().map_err(|error| Error::file(&self.path, format!("cannot {what}: {}", super::plain(&error))))?;
 
         let names = self.tables.iter().map(|(series, _)| series.iter().map(|s| s.name.clone()).collect());
-        let mut grown = Self::find(scratch, &names.collect::<Vec<_>>())?;
-        for (new, old) in grown.tables.iter_mut().zip(&self.tables) {
+        let mut changed = Self::find(scratch, &names.collect::<Vec<_>>())?;
+        for (new, old) in changed.tables.iter_mut().zip(&self.tables) {
             new.1 = old.1;
         }
-        grown.sums = self.sums;
-        grown.show_committed_only(&grown.open()?)?;
+        changed.sums = self.sums;
+        changed.show_committed_only(&changed.open()?)?;
         std::fs::rename(scratch, &self.path).map_err(|error| failed(&self.path, error))?;
-        grown.moved_to(&self.path);
-        Ok(grown)
+        changed.moved_to(&self.path);
+        Ok(changed)
     }
 }
 

@@ -22,7 +22,8 @@ use crate::output::HistoryRow;
 use crate::parallel::share_text;
 use crate::petsc;
 use crate::scene::{self, Scene, Source};
-use crate::solution;
+use crate::solution::{self, Solution};
+use crate::warnings::Warning;
 
 use ladder::Ladder;
 
@@ -63,6 +64,8 @@ pub struct Run {
     pub seconds: f64,
     /// The largest resident memory of rank 0 while it ran, bytes.
     pub memory: f64,
+    /// What is doubtful about it.
+    pub warnings: Vec<Warning>,
 }
 
 /// The hysteretic force counts in full where it comes to this share of N, and in proportion where it is less: a symmetric
@@ -176,7 +179,8 @@ impl<'a> Solver<'a> {
                 let [seconds, memory] = cost;
                 let counts = solution.counts;
                 let (steps, newton) = (counts.steps, counts.newton);
-                Some(Run { history: solution.history, steps, newton, seconds, memory })
+                let Solution { history, warnings, .. } = solution;
+                Some(Run { history, steps, newton, seconds, memory, warnings })
             }
             Err(Error::Solver(reason) | Error::Domain(reason)) => {
                 self.reason = reason;

@@ -146,6 +146,11 @@ impl Outcome {
     }
 }
 
+/// What was printed on standard error, without warnings.
+pub fn errors(text: &str) -> String {
+    text.split_inclusive('\n').filter(|line| !line.starts_with("warning: ")).collect()
+}
+
 /// The program on `ranks`; on one without a launcher, and without what MPI does to find other processes.
 pub fn program(ranks: usize) -> Command {
     if ranks == 1 {
@@ -173,12 +178,12 @@ pub fn names(directory: &Path) -> Vec<String> {
     names
 }
 
-/// What the command wrote to standard error, after checking its exit code.
+/// The errors that the command wrote, after checking its exit code.
 pub fn ends_with(command: &mut Command, code: i32) -> String {
     let output = command.output().unwrap();
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(code), "{command:?}\n{}{text}", String::from_utf8_lossy(&output.stdout));
-    text
+    errors(&text)
 }
 
 /// Standard output, after checking that all went well.

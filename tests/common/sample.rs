@@ -18,6 +18,7 @@ pub fn metadata() -> Metadata {
         git_commit: "abcdef".into(),
         petsc_version: "3.18.5".into(),
         ranks: 3,
+        warnings: Vec::new(),
         started: SystemTime::now(),
     }
 }

@@ -20,6 +20,7 @@ def check(path):
         for name, kind in ROOT.items():
             assert isinstance(file.attrs[name], kind), f"{name}: {type(file.attrs[name])}"
         assert file.attrs["units"] == "SI"
+        assert file.attrs["warnings"].ndim == 1 and all(isinstance(text, str) for text in file.attrs["warnings"])
         assert file.attrs["status"] in ("complete", "stopped", "not converged")
 
         def described(name, item):

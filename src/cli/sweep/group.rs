@@ -122,6 +122,7 @@ impl Group {
             origin: Origin::Rest,
             compliances: &self.compliances,
             keep_state: true,
+            doubt: &|_| {},
         };
         let outcome = case::solve(&job, |total| Progress::claim(claim.cloned(), total)).and_then(|done| done.result);
         match outcome {
@@ -169,6 +170,8 @@ impl Group {
             origin,
             compliances: &self.compliances,
             keep_state: false,
+            // They are in its file, and told of all cases together at the end.
+            doubt: &|_| {},
         };
         let outcome = case::solve(&job, |total| Progress::claim(claim.cloned(), total)).and_then(|done| done.result);
         let record = Record {

@@ -22,13 +22,16 @@ use self::group::Group;
 pub(super) use self::summary::line;
 use self::tasks::Tasks;
 use super::interrupt::Interrupt;
+use super::telling::Telling;
 use super::terminal;
 use crate::composition::{Form, form};
 use crate::error::{Error, Result};
+use crate::output::reader::Results;
 use crate::parallel::{agree, any, share_text};
 use crate::petsc::Session;
 use crate::scene::sweep::{self, Sweep};
 use crate::scene::{self, Scene};
+use crate::warnings::Warning;
 
 /// With all unknowns in one system, one rank for so many of them.
 const UNKNOWNS_PER_RANK: usize = 50_000;
@@ -53,6 +56,11 @@ pub struct SweepArguments {
     /// Ranks that solve a case together [default: from the size of the problem]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     ranks_per_case: Option<u32>,
+    /// Print the summary as one JSON object on standard output, and nothing else there
+    #[arg(long, conflicts_with_all = ["list", "slurm"])]
+    json: bool,
+    #[command(flatten)]
+    telling: Telling,
     /// PETSc options, such as -ksp_type gmres -pc_type gamg
     #[arg(last = true, value_name = "PETSC OPTIONS")]
     petsc: Vec<String>,
@@ -63,6 +71,7 @@ pub fn run(arguments: &SweepArguments) -> Result<()> {
     if arguments.list || arguments.slurm {
         return print(arguments);
     }
+    arguments.telling.begin(arguments.json);
     let interrupt = Interrupt::watch()?;
     super::in_session(&arguments.petsc, |session, world| solve((session, world), &interrupt, arguments))
 }
@@ -76,13 +85,13 @@ fn print(arguments: &SweepArguments) -> Result<()> {
     }
     if arguments.slurm {
         let ranks = arguments.ranks_per_case.map_or_else(|| ranks_per_case(&sweep), |ranks| ranks as usize);
-        terminal::tell(slurm::script(&arguments.sweep, &out, sweep.cases.len(), ranks));
+        terminal::answer(slurm::script(&arguments.sweep, &out, sweep.cases.len(), ranks));
         return Ok(());
     }
     let folder = Folder::at(&out);
     for index in 0..sweep.cases.len() {
         let state = folder.state(&sweep, index).word();
-        terminal::tell(format_args!("{index:4}  {state:13}  {}", sweep.label(index)));
+        terminal::answer(format_args!("{index:4}  {state:13}  {}", sweep.label(index)));
     }
     Ok(())
 }
@@ -133,15 +142,21 @@ fn solve(
     let stopped = any(world, interrupt.requested());
     let mine = if world.rank() == 0 { summary::write(&sweep, &folder) } else { Ok(()) };
     agree(world, mine)?;
-    let mine = if world.rank() == 0 { tell((&sweep, &folder), &chosen, begun, stopped) } else { Ok(()) };
+    let mine = if world.rank() == 0 { tell((&sweep, &folder), arguments, &chosen, begun, stopped) } else { Ok(()) };
     agree(world, mine)
 }
 
 /// Failed cases that the last message names; the summary has them all.
 const NAMED: usize = 3;
 
-/// Prints how many cases are done; an error when one failed or is missing.
-fn tell((sweep, folder): (&Sweep, &Folder), chosen: &[usize], begun: Instant, stopped: bool) -> Result<()> {
+/// Prints how many cases are done, and what is doubtful about them; an error when one failed or is missing.
+fn tell(
+    (sweep, folder): (&Sweep, &Folder),
+    arguments: &SweepArguments,
+    chosen: &[usize],
+    begun: Instant,
+    stopped: bool,
+) -> Result<()> {
     let (mut complete, mut failed, mut first_exit) = (0, Vec::new(), None);
     for &index in chosen {
         match folder.state(sweep, index) {
@@ -153,15 +168,28 @@ fn tell((sweep, folder): (&Sweep, &Folder), chosen: &[usize], begun: Instant, st
             _ => {}
         }
     }
-    let seconds = super::summary::seconds(begun.elapsed().as_secs_f64());
+    let doubts: Vec<Doubt> = doubts(folder, chosen);
+    doubts.iter().for_each(|doubt| terminal::doubt(&doubt.warning()));
+    let doubtful: usize = doubts.iter().map(|doubt| doubt.cases.len()).sum();
+    let elapsed = begun.elapsed().as_secs_f64();
     let (total, directory) = (chosen.len(), folder.path().display());
-    let counts = format!("{complete} of {total} case(s) complete, {} failed", failed.len());
-    terminal::tell(format_args!("{counts}, in {seconds}; {directory}/summary.csv"));
+    let counts = format!("{complete} of {total} case(s) complete, {} failed, {doubtful} warning(s)", failed.len());
+    terminal::tell(format_args!("{counts}, in {}; {directory}/summary.csv", super::summary::seconds(elapsed)));
+    if arguments.json {
+        terminal::answer(serde_json::json!({
+            "directory": directory.to_string(),
+            "cases": total,
+            "complete": complete,
+            "failed": failed,
+            "warnings": doubts.iter().map(|doubt| doubt.warning().to_string()).collect::<Vec<_>>(),
+            "wall_seconds": elapsed,
+        }));
+    }
     if stopped && complete < total {
         return Err(Error::Stopped("stopped by a signal; start the same sweep again to go on with it".into()));
     }
     if failed.is_empty() {
-        return Ok(());
+        return arguments.telling.judge(doubtful);
     }
     let named = failed.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join("; ");
     let text = format!("{} of {total} case(s) failed: {named}", failed.len());
@@ -172,6 +200,43 @@ fn tell((sweep, folder): (&Sweep, &Folder), chosen: &[usize], begun: Instant, st
         Some(1) => Error::Mismatch(text),
         _ => Error::Solver(text),
     })
+}
+
+/// A warning that cases have in common but for its numbers.
+struct Doubt {
+    key: String,
+    /// As the first of them has it.
+    text: String,
+    cases: Vec<usize>,
+}
+
+impl Doubt {
+    fn warning(&self) -> Warning {
+        let Self { key, text, cases } = self;
+        let others = match cases.len() {
+            1 => String::new(),
+            count => format!(" and {} more", count - 1),
+        };
+        Warning::new(key.clone(), format!("{text} (case {}{others})", cases[0]))
+    }
+}
+
+/// The warnings in the results of the cases, one for each key.
+fn doubts(folder: &Folder, cases: &[usize]) -> Vec<Doubt> {
+    let mut list: Vec<Doubt> = Vec::new();
+    for &case in cases {
+        // A case without results has none.
+        let found = Results::open(&folder.results(case)).and_then(|results| results.warnings()).unwrap_or_default();
+        for warning in found {
+            let (key, text) = warning.split_once(": ").unwrap_or((&warning, ""));
+            match list.iter_mut().find(|doubt| doubt.key == key) {
+                Some(doubt) if doubt.cases.contains(&case) => {}
+                Some(doubt) => doubt.cases.push(case),
+                None => list.push(Doubt { key: key.into(), text: text.into(), cases: vec![case] }),
+            }
+        }
+    }
+    list
 }
 
 fn read(file: &Path) -> Result<String> {

@@ -42,7 +42,7 @@ pub fn may_write(directory: &Path) -> Result<()> {
 /// Writes the file anew from what is in the directory.
 pub fn write(sweep: &Sweep, folder: &Folder) -> Result<()> {
     let before = [BEFORE].into_iter().chain(sweep.keys.iter().map(String::as_str));
-    let after = AFTER.into_iter().chain(FIGURES);
+    let after = AFTER.into_iter().chain(["warnings"]).chain(FIGURES);
     let mut text = line(before.chain(after).map(str::to_owned));
     for (index, case) in sweep.cases.iter().enumerate() {
         let state = folder.state(sweep, index);
@@ -64,8 +64,10 @@ pub fn write(sweep: &Sweep, folder: &Folder) -> Result<()> {
             State::Missing => String::new(),
             _ => format!("{:.3}", record.wall_seconds),
         };
+        let warnings = results.as_ref().and_then(|results| results.warnings().ok());
+        let warnings = warnings.map_or_else(String::new, |warnings| warnings.len().to_string());
         let cells = std::iter::once(index.to_string()).chain(case.values.iter().cloned());
-        let cells = cells.chain([state.word().to_owned(), exit, reason, wall]).chain(FIGURES.map(figure));
+        let cells = cells.chain([state.word().to_owned(), exit, reason, wall, warnings]).chain(FIGURES.map(figure));
         text.push_str(&line(cells));
     }
     replace(&folder.path().join(FILE), &text)

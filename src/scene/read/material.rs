@@ -134,7 +134,11 @@ fn arms(section: &Section, key: &str) -> Result<Vec<Arm>> {
         what: "a share of the instantaneous modulus, above 0 and at most 1",
         accepts: |weight| weight > 0.0 && weight <= 1.0,
     };
-    const TIME: Quantity = Quantity::positive("a positive relaxation time in s");
+    // Rates of smaller ones are no numbers.
+    const TIME: Quantity = Quantity {
+        what: "a positive relaxation time in s, at least 2.3e-308",
+        accepts: |time| time > 0.0 && time.is_normal(),
+    };
 
     let arm = |section: &Section| {
         section.only(&["weight", "time"])?;
@@ -241,7 +245,7 @@ impl Given {
         for (key, arms) in [("arms", &mut arms), ("bulk_arms", &mut self.bulk_arms)] {
             for (index, arm) in arms.iter_mut().enumerate() {
                 arm.time *= factor;
-                if !(arm.time > 0.0 && arm.time.is_finite()) {
+                if !(arm.time > 0.0 && arm.time.is_normal()) {
                     let reason = format!("takes {key}.{index}.time to {} s; choose one nearer the reference", arm.time);
                     return Err(section.error("temperature", reason));
                 }
