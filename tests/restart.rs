@@ -365,7 +365,7 @@ fn a_signal_while_it_starts() {
     assert!(!out.exists());
     assert!(Command::new("kill").arg(child.id().to_string()).status().unwrap().success());
     let output = child.wait_with_output().unwrap();
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    let message = errors(&String::from_utf8_lossy(&output.stderr));
     assert_eq!(output.status.code(), Some(5), "{message}");
     assert!(
         message.starts_with("mpjr: stopped by a signal at t = 0.1") && message.ends_with("--resume\n"),

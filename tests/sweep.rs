@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use common::program::{assert_same, ends_with, names, output_of, program};
+use common::program::{assert_same, ends_with, errors, names, output_of, program};
 use mpjr::output::reader::Results;
 
 const SCENE: &str = r#"
@@ -380,7 +380,7 @@ fn damaged_cases_are_solved_again() {
             1
         );
     }
-    assert_eq!(said.lines().count(), 3, "{said}");
+    assert_eq!(errors(&said).lines().count(), 3, "{said}");
     assert!(std::fs::read(out.join("case-0001.damaged")).unwrap() == damaged);
     let original = out.join("original.h5");
     std::fs::write(&original, &kept[1]).unwrap();
