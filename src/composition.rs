@@ -11,27 +11,27 @@ use std::path::Path;
 use std::rc::Rc;
 
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::{Communicator, Root};
+use mpi::traits::Communicator;
 
 use crate::bulk::Arms;
 use crate::element::mpjr::Quadrature;
 use crate::error::Result;
-use crate::friction::{CoulombTanh, ElasticSlip, Friction};
-use crate::interface::{Interface, Laws, Surface};
+use crate::friction::{Coulomb, CoulombTanh, ElasticSlip, Law};
+use crate::interface::{Interface, Laws};
 use crate::loading::{self, Adaptive, Motion, Phase, Placement};
 use crate::mesh::Mesh;
 use crate::parallel::{agree, share_numbers};
-use crate::petsc::{Integrator, Linear, Matrix, Settings, Vector};
+use crate::petsc::{Integrator, Linear, Matrix, Search, Settings, Vector};
 use crate::profile::Profile;
 use crate::scene::{self, Scene, Stepping, When};
 use crate::solve::{
-    Backing, Body, Compliance, Condensed, Following, Inside, Interior, LARGE_FACE, Layered, MAX_NEWTON, Monolithic,
-    PeriodicColumn, Relaxation, Relaxations, Remembering, Solid, Sparse, TransientProblem,
+    Body, Compliance, Condensed, Following, Inside, Interior, LARGE_FACE, LARGE_PERIODIC_FACE, Layered, MAX_NEWTON,
+    Monolithic, PeriodicColumn, Relaxation, Relaxations, Remembering, Response, Solid, Sparse, TransientProblem,
 };
 
 use body::Materials;
 pub use body::{Outline, Stretch, outline};
-pub use estimate::{Estimate, augmentations};
+pub use estimate::Estimate;
 pub use inputs::inputs;
 pub use profile::{Finest, PressedEnd, Shape, elevations, measured, numbers, reach, seam_doubt, shape};
 
@@ -122,15 +122,7 @@ pub fn assemble(
     compliances: &Compliances,
 ) -> Result<Problem> {
     let materials = Materials::new(scene);
-    let laws = Laws {
-        profile,
-        penalty: body::penalty(scene, &mesh),
-        augmentation: match scene.contact.method {
-            scene::Method::Penalty => None,
-            scene::Method::Augmented { augmentation_tolerance } => Some(augmentation_tolerance),
-        },
-        friction: scene.friction.as_ref().map(friction),
-    };
+    let laws = Laws { profile, penalty: body::penalty(scene, &mesh), friction: scene.friction.as_ref().map(friction) };
     let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
     let solid = Solid { mesh, quadrilateral: body::quadrilateral(scene), regions: materials.regions.clone() };
     let mut problem = match form(scene) {
@@ -179,7 +171,8 @@ fn monolithic(
     if interface.friction().is_none() {
         tangent.declare_positive_definite()?;
     }
-    let integrator = integrator(comm, scene, Linear::Preconditioned, &mut tangent)?;
+    let settings = Settings { linear: Linear::Preconditioned, max_newton: MAX_NEWTON, search: Search::Least };
+    let integrator = Integrator::new(comm, settings, &mut tangent)?;
     let phases = phases(scene, clearance(scene, &mut interface)?);
     let mut strategy = Box::new(Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?);
     if integrator.asks_for_solves()? {
@@ -198,8 +191,6 @@ fn following(
     let u = face_vector(comm, &solid.mesh)?;
     let get = || compliances.get(&solid, || compliance(scene, &solid)).map(Some);
     let compliance = agree(comm, if comm.rank() == 0 { get() } else { Ok(None) })?;
-    let mut softness = compliance.as_ref().map_or(0.0, |compliance| compliance.largest());
-    comm.process_at_rank(0).broadcast_into(&mut softness);
     let mesh = solid.mesh.clone();
     let Materials { series, times, memory, .. } = materials;
     let relaxation = match series.into_iter().next().flatten() {
@@ -208,7 +199,7 @@ fn following(
     };
     let column = periodic_column(scene, &solid);
     let interior = Interior::new(comm, solid, column);
-    let backing = Following { compliance, softness, relaxation, interior, secant: 1.0, account: None };
+    let backing = Following { compliance, relaxation, interior, secant: 1.0, account: None };
     condensed(comm, scene, mesh, u, (interface, backing))
 }
 
@@ -225,20 +216,30 @@ fn remembering(
     condensed(comm, scene, mesh, u, (interface, backing))
 }
 
-fn condensed<B: Backing + 'static>(
+fn condensed<R: Response + 'static>(
     comm: &SimpleCommunicator,
     scene: &Scene,
     mesh: Mesh,
     u: Vector,
-    (mut interface, backing): (Interface, B),
+    (mut interface, response): (Interface, R),
 ) -> Result<Problem> {
-    let held: Vec<[bool; 2]> = mesh.face.unknown.iter().map(|&unknown| mesh.held[unknown as usize]).collect();
-    let linear = if 2 * held.len() > LARGE_FACE { Linear::OwnIterative } else { Linear::Own };
-    let mut tangent = Matrix::shell(comm, u.local_len())?;
-    let integrator = integrator(comm, scene, linear, &mut tangent)?;
+    let periodic = scene.layer().is_some_and(|layer| layer.sides == scene::Sides::Periodic);
+    let components = 2 * mesh.face.x.len();
+    let linear = match components > if periodic { LARGE_PERIODIC_FACE } else { LARGE_FACE } {
+        // Where a product costs next to nothing, Newton's method need not wait for exact steps.
+        true if components <= LARGE_FACE => Linear::OwnIterative(1e-6),
+        true => Linear::OwnIterative(1e-2),
+        false => Linear::Own,
+    };
+    // The tractions of the points, on rank 0.
+    let points = if u.local_len() > 0 { interface.points().count() } else { 0 };
+    let tractions = Vector::new(comm, 2 * points)?;
+    let mut tangent = Matrix::shell(comm, tractions.local_len())?;
+    let settings = Settings { linear, max_newton: MAX_NEWTON, search: Search::Own };
+    let integrator = Integrator::new(comm, settings, &mut tangent)?;
     let phases = phases(scene, clearance(scene, &mut interface)?);
-    let strategy = Box::new(Condensed::new(interface, backing, &u, &held, scene.solver.tolerance)?);
-    Ok(Problem { strategy, tangent, u, phases, integrator, mesh })
+    let strategy = Box::new(Condensed::new(comm, interface, response, &u, scene.solver.tolerance)?);
+    Ok(Problem { strategy, tangent, u: tractions, phases, integrator, mesh })
 }
 
 /// x, z of each face node, on rank 0.
@@ -271,21 +272,15 @@ fn periodic_column(scene: &Scene, solid: &Solid) -> Option<PeriodicColumn> {
     Some(PeriodicColumn::new(solid, layer.cells))
 }
 
-/// With nodal quadrature whole Newton steps are best, because those that overrun friction are bent node by node; Gauss
-/// points share their nodes, and a minimiser along the step must see to them.
-fn integrator(comm: &SimpleCommunicator, scene: &Scene, linear: Linear, tangent: &mut Matrix) -> Result<Integrator> {
-    let whole_steps = scene.contact.quadrature == scene::Quadrature::Nodal;
-    Integrator::new(comm, Settings { linear, max_newton: MAX_NEWTON, whole_steps }, tangent)
-}
-
-fn friction(friction: &scene::Friction) -> Friction {
+fn friction(friction: &scene::Friction) -> Box<dyn Law> {
     match *friction {
         scene::Friction::CoulombTanh { coefficient, regularisation } => {
-            Friction::CoulombTanh(CoulombTanh { coefficient, regularisation })
+            Box::new(CoulombTanh { coefficient, regularisation })
         }
         scene::Friction::CoulombElasticSlip { coefficient, elastic_slip } => {
-            Friction::ElasticSlip(ElasticSlip { coefficient, elastic_slip })
+            Box::new(ElasticSlip { coefficient, elastic_slip })
         }
+        scene::Friction::Coulomb { coefficient } => Box::new(Coulomb { coefficient }),
     }
 }
 
@@ -301,9 +296,10 @@ fn clearance(scene: &Scene, interface: &mut Interface) -> Result<f64> {
     if !scene.is_adaptive() {
         return Ok(0.0);
     }
-    let at_rest = Surface::at_rest(interface.face().x.len());
-    let gaps = interface.fields(Placement::default(), &at_rest)?.gap;
-    Ok(gaps.into_iter().fold(f64::INFINITY, f64::min))
+    interface.place(Placement::default())?;
+    let points = interface.points().all().iter().enumerate();
+    let gaps = points.map(|(i, point)| interface.clearance(i, 0.0) * point.normal.y);
+    Ok(gaps.fold(f64::INFINITY, f64::min))
 }
 
 /// The phases end to end, each from where the one before left the indenter, without their steps.

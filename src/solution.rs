@@ -73,12 +73,12 @@ impl Solution {
 pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
     let energy = report.problem.energy().unwrap_or_default();
     let mut contact = report.problem.contact()?;
-    let totals = contact.totals()?;
+    let (totals, placement) = (contact.totals()?, contact.placement());
     let row = HistoryRow {
         time: report.time,
         phase: report.phase,
-        approach: contact.placement.approach,
-        sliding: contact.placement.sliding,
+        approach: placement.approach,
+        sliding: placement.sliding,
         normal_force: totals.normal_force,
         tangential_force: totals.tangential_force,
         hysteretic_force: totals.hysteretic_force,
@@ -95,9 +95,9 @@ pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
 
 /// The contact face as it is.
 pub fn frame(report: &mut Report<'_>) -> Result<InterfaceFrame> {
-    let mut contact = report.problem.contact()?;
-    let fields = contact.fields()?;
-    let component = |i: usize| contact.surface.displacement.iter().skip(i).step_by(2).copied().collect();
+    let contact = report.problem.contact()?;
+    let fields = contact.fields();
+    let component = |i: usize| contact.displacement.iter().skip(i).step_by(2).copied().collect();
     let frame = InterfaceFrame {
         time: report.time,
         pressure: fields.pressure,

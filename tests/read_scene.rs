@@ -63,7 +63,10 @@ fn the_paper_s_scene_is_read_as_written() {
 /// pressure where it hardly changes its volume; both by hand.
 #[test]
 fn a_tolerance_is_a_penalty() {
-    let penalty = |overrides: &[&str]| read_set(SMALLEST, overrides).unwrap().contact.penalty.stiffness().unwrap();
+    let penalty = |overrides: &[&str]| match read_set(SMALLEST, overrides).unwrap().contact.penalty {
+        Some(Penalty::Stiffness(stiffness)) => stiffness,
+        other => panic!("{other:?}"),
+    };
     let tolerance = "contact={ tolerance = 1e-2 }";
     // G = 1 Pa, dx = 0.5 m: C = 0.7 * 0.5 / pi m/Pa.
     let wave = std::f64::consts::PI / (0.7 * 0.5) / 1e-2;
@@ -73,7 +76,10 @@ fn a_tolerance_is_a_penalty() {
     let set = [tolerance, "material={ shear_modulus = 1, poisson_ratio = 0.49 }"];
     assert!((penalty(&set) * 1e-2 * 0.02 / 1.02 - 1.0).abs() < 1e-12);
     let scene = read_set(SMALLEST, &set).unwrap();
-    assert!((added_compliance(penalty(&set), layer(&scene), &scene.materials) - 1e-2).abs() < 1e-15);
+    assert!(
+        (added_compliance(penalty(&set), layer(&scene), &scene.materials, shortest_step(&scene.phases)) - 1e-2).abs()
+            < 1e-15
+    );
 }
 
 #[test]
@@ -250,17 +256,24 @@ impl Random {
         let rms = self.of(&[Rms::RmsSlope(radius), Rms::RmsHeight(radius)]);
         let file = self.of(&["a.txt", "../é \"b\"/c.csv", "/abs/d"]).to_owned();
         let period = self.of(&[None, Some(wavelength)]);
-        let [coefficient, small, tolerance] = [10.0 * self.unit(), 1e-12 * self.positive(), self.unit()];
+        let [coefficient, small] = [10.0 * self.unit(), 1e-12 * self.positive()];
         let friction = self.of(&[
             Friction::CoulombTanh { coefficient, regularisation: small },
             Friction::CoulombElasticSlip { coefficient, elastic_slip: small },
         ]);
         let quadrature = self.of(&[Quadrature::Nodal, Quadrature::Gauss]);
         let adaptive = phases.iter().any(|phase| matches!(phase.stepping, Stepping::Tolerance(_)));
-        let method = match quadrature {
-            Quadrature::Nodal if !adaptive => Method::Augmented { augmentation_tolerance: 1e-6 * tolerance },
-            _ => Method::Penalty,
+        // Exact laws are for nodes.
+        let penalty = Some(Penalty::Stiffness(1e200 * self.positive()));
+        let strategy = self.of(&[Strategy::Auto, Strategy::Condensed, Strategy::Monolithic]);
+        let exact = quadrature == Quadrature::Nodal && strategy != Strategy::Monolithic;
+        let friction = match friction {
+            Friction::CoulombTanh { coefficient, .. } if exact && self.below(2) == 0 => {
+                Friction::Coulomb { coefficient }
+            }
+            other => other,
         };
+        let penalty = if exact { self.of(&[None, penalty]) } else { penalty };
         let ends = phases.iter().take(2).map(|phase| When::PhaseEnd(phase.name.clone()));
         let times = [When::Time(phases[0].duration * self.unit())];
         let body = if self.below(4) == 0 { self.mesh_file() } else { self.layer(wavelength) };
@@ -288,7 +301,7 @@ impl Random {
                     seed: (seed * 1e18) as u64,
                 },
             ]),
-            contact: Contact { penalty: Penalty::Stiffness(1e200 * self.positive()), quadrature, method },
+            contact: Contact { penalty, quadrature },
             friction: self.of(&[None, Some(friction)]),
             output: Output {
                 interface_every: self.below(3) as usize,
@@ -297,10 +310,7 @@ impl Random {
                 energy: self.below(2) == 0,
             },
             phases,
-            solver: Solver {
-                strategy: self.of(&[Strategy::Auto, Strategy::Monolithic]),
-                tolerance: 1e-6 * self.unit(),
-            },
+            solver: Solver { strategy, tolerance: 1e-6 * self.unit() },
         }
     }
 

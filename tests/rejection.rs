@@ -74,7 +74,7 @@ impl Observer for Told {
         self.times.push(report.time);
         let energy = report.problem.energy().unwrap();
         let mut contact = report.problem.contact()?;
-        let (totals, fields) = (contact.totals()?, contact.fields()?);
+        let (totals, fields) = (contact.totals()?, contact.fields());
         let mut told = vec![
             report.time,
             totals.normal_force,
@@ -92,8 +92,7 @@ impl Observer for Told {
         for field in [&fields.pressure, &fields.shear, &fields.gap, &fields.slip_rate] {
             told.extend(field);
         }
-        told.extend(&contact.surface.displacement);
-        told.extend(&contact.surface.rate);
+        told.extend(contact.displacement);
         if !self.face_only {
             // The stress tells of the arms.
             let bulk = report.problem.bulk_fields(report.u)?;

@@ -45,6 +45,6 @@ pub fn plan(scene: &Scene, outline: &Outline, warnings: &[Warning]) -> Value {
         "seconds_per_step": estimate.step,
         "seconds": estimate.step * scene.steps() as f64,
         "memory_bytes": estimate.memory,
-        "penalty": scene.contact.penalty.stiffness().or(outline.penalty),
+        "penalty": scene.contact.stiffness().or(outline.penalty),
     })
 }

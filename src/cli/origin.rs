@@ -65,10 +65,10 @@ impl Origin<'_> {
             return Err(Error::Usage(format!("{}: its checkpoint is beyond the loading history", file.display())));
         }
         let counts = snapshot.numbers("counts")?.map(|count: f64| count as usize);
-        let [steps, pieces, rejected, newton, augmentations, planned_steps] = counts;
+        let [steps, pieces, rejected, newton, planned_steps] = counts;
         Ok(Some(Begun {
             position,
-            counts: Counts { steps, pieces, rejected, newton, augmentations, ..Counts::default() },
+            counts: Counts { steps, pieces, rejected, newton, ..Counts::default() },
             planned_steps,
             rows: rows_of(&snapshot)?,
             started,
@@ -95,11 +95,8 @@ fn stored(results: &Path) -> Result<(Snapshot, String)> {
 
 /// Adds what [`Begun`] holds besides the state of the problem.
 pub fn save_counts(snapshot: &mut Snapshot, counts: Counts, planned_steps: usize) {
-    let Counts { steps, pieces, rejected, newton, augmentations, .. } = counts;
-    snapshot.put(
-        "counts",
-        [steps, pieces, rejected, newton, augmentations, planned_steps].map(|count| count as f64).to_vec(),
-    );
+    let Counts { steps, pieces, rejected, newton, .. } = counts;
+    snapshot.put("counts", [steps, pieces, rejected, newton, planned_steps].map(|count| count as f64).to_vec());
 }
 
 /// Adds the rows of the result file that count.

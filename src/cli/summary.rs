@@ -5,11 +5,13 @@ use std::time::Duration;
 
 use super::case::Done;
 use super::material;
-use crate::composition::{self, Estimate, Form, Outline, Stretch, augmentations};
+use crate::composition::{self, Estimate, Form, Outline, Stretch};
 use crate::energy::Energy;
 use crate::output::Status;
 use crate::petsc;
-use crate::scene::{Friction, Method, Penalty, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance};
+use crate::scene::{
+    Friction, Penalty, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance, shortest_step,
+};
 use crate::solve::{Counts, Work};
 
 /// What is modelled and what is not: (modelled, not modelled).
@@ -38,17 +40,14 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
         Some(Friction::CoulombElasticSlip { coefficient, elastic_slip }) => {
             yes.push(format!("friction: f = {coefficient}, sticking up to an elastic slip of {elastic_slip} m"));
         }
+        Some(Friction::Coulomb { coefficient }) => {
+            yes.push(format!("friction: f = {coefficient}, Coulomb's law itself"));
+        }
         None => no.push("friction (symmetric solver)".to_owned()),
     }
-    let method = match scene.contact.method {
-        Method::Penalty => String::new(),
-        Method::Augmented { augmentation_tolerance } => {
-            format!("augmented Lagrangian up to {augmentation_tolerance} of the displacement, from a ")
-        }
-    };
     yes.push(format!(
-        "contact: {method}penalty of {}, {} quadrature",
-        penalty(scene),
+        "contact: {}, {} quadrature",
+        normal_law(scene),
         match scene.contact.quadrature {
             Quadrature::Nodal => "nodal",
             Quadrature::Gauss => "two-point Gauss",
@@ -66,14 +65,17 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
 }
 
 /// The penalty, and how much it softens a layer.
-fn penalty(scene: &Scene) -> String {
+fn normal_law(scene: &Scene) -> String {
     match (scene.contact.penalty, scene.layer()) {
-        (Penalty::Stiffness(stiffness), Some(layer)) => {
-            let added = added_compliance(stiffness, layer, &scene.materials);
-            format!("{stiffness:.3e} Pa/m ({added:.2e} of the compliance to the wave the layer is stiffest to)")
+        (None, _) => "no penetration".into(),
+        (Some(Penalty::Stiffness(stiffness)), Some(layer)) => {
+            let added = added_compliance(stiffness, layer, &scene.materials, shortest_step(&scene.phases));
+            format!(
+                "penalty of {stiffness:.3e} Pa/m ({added:.2e} of the compliance to the wave the layer is stiffest to)"
+            )
         }
-        (Penalty::Stiffness(stiffness), None) => format!("{stiffness:.3e} Pa/m"),
-        (Penalty::Tolerance(tolerance), _) => format!("that softens the body by {tolerance} at most"),
+        (Some(Penalty::Stiffness(stiffness)), None) => format!("penalty of {stiffness:.3e} Pa/m"),
+        (Some(Penalty::Tolerance(tolerance)), _) => format!("penalty that softens the body by {tolerance} at most"),
     }
 }
 
@@ -101,12 +103,8 @@ pub fn plan(scene: &Scene, outline: &Outline) -> String {
     let _ = writeln!(text, "strategy:      {}", strategy(scene));
     let _ = write!(
         text,
-        "estimate:      {} per step{}, {} in all on one core; {:.1} GB of memory",
+        "estimate:      {} per step, {} in all on one core; {:.1} GB of memory",
         seconds(estimate.step),
-        match augmentations(scene) {
-            0.0 => String::new(),
-            again => format!(" with {again} augmentations"),
-        },
         seconds(estimate.step * scene.steps() as f64),
         estimate.memory / 1e9
     );
@@ -191,12 +189,7 @@ pub fn outcome(scene: &Scene, done: &Done) -> String {
     if scene.output.energy {
         let _ = writeln!(text, "{:<15}{}", "energy:", balance(&last.energy));
     }
-    let augmented = match counts.augmentations {
-        0 => String::new(),
-        again => format!(", {again} augmentations"),
-    };
-    let work =
-        format!("{} steps{rejected}{pieces}{augmented}, {} Newton iterations{sparse}", counts.steps, counts.newton);
+    let work = format!("{} steps{rejected}{pieces}, {} Newton iterations{sparse}", counts.steps, counts.newton);
     let _ = writeln!(text, "{:<15}{work}", "work:");
     let _ = writeln!(
         text,

@@ -97,7 +97,7 @@ impl Outline {
             face: Stretch::of(scene, mesh),
             unknowns: mesh.free_components(),
             cells: [mesh.cells.len() - triangles, triangles],
-            penalty: scene.contact.penalty.stiffness().is_none().then(|| penalty(scene, mesh)),
+            penalty: penalty(scene, mesh).filter(|_| scene.contact.stiffness().is_none()),
             height: height(mesh),
             nodes: face.x.iter().zip(&face.recess).map(|(x, recess)| [*x, *recess]).collect(),
         }
@@ -188,8 +188,9 @@ fn file_mesh(bytes: &[u8], mesh: &MeshFile, scene: &Scene, file: &Path) -> Resul
     })?;
     depth_allows(&built, scene, file)?;
     match penalty(scene, &built) {
-        penalty if penalty.is_finite() && penalty > 0.0 => {}
-        penalty => {
+        None => {}
+        Some(penalty) if penalty.is_finite() && penalty > 0.0 => {}
+        Some(penalty) => {
             let reason = format!("gives a penalty of {penalty:?} Pa/m; give another");
             return Err(Error::scene(file, "contact.tolerance", reason));
         }
@@ -240,10 +241,10 @@ fn height(mesh: &Mesh) -> f64 {
     face.fold(f64::NEG_INFINITY, f64::max) - low
 }
 
-/// The stiffness of the contact, Pa/m; from the mesh of the scene where it says a tolerance.
-pub fn penalty(scene: &Scene, mesh: &Mesh) -> f64 {
-    let tolerance = match scene.contact.penalty {
-        scene::Penalty::Stiffness(stiffness) => return stiffness,
+/// The stiffness of the contact, Pa/m, from the mesh of the scene where it says a tolerance; none = no penetration.
+pub fn penalty(scene: &Scene, mesh: &Mesh) -> Option<f64> {
+    let tolerance = match scene.contact.penalty? {
+        scene::Penalty::Stiffness(stiffness) => return Some(stiffness),
         scene::Penalty::Tolerance(tolerance) => tolerance,
     };
     let edge = mesh.face.edges.iter().map(|edge| edge.length).fold(f64::INFINITY, f64::min);
@@ -252,7 +253,7 @@ pub fn penalty(scene: &Scene, mesh: &Mesh) -> f64 {
     let touches = |cell: usize| mesh.cell_unknowns(cell).corners().iter().any(|&node| at_face[node as usize]);
     let regions: BTreeSet<u16> = (0..mesh.cells.len()).filter(|&cell| touches(cell)).map(|c| mesh.regions[c]).collect();
     let materials: Vec<_> = regions.iter().map(|&region| &scene.materials[usize::from(region)]).collect();
-    scene::penalty_on_mesh(tolerance, [edge, height(mesh)], &materials)
+    Some(scene::penalty_on_mesh(tolerance, [edge, height(mesh)], &materials, scene::shortest_step(&scene.phases)))
 }
 
 /// What the scene's quadrilaterals are.

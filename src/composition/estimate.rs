@@ -10,15 +10,7 @@ use crate::error::{Error, Result};
 use crate::loading::Target;
 use crate::memory;
 use crate::parallel::agree;
-use crate::scene::{Body, Method, Scene};
-
-/// How often a step is solved again for the multipliers; found: 0.1 times, where few nodes come into contact, to twice.
-pub fn augmentations(scene: &Scene) -> f64 {
-    match scene.contact.method {
-        Method::Penalty => 0.0,
-        Method::Augmented { .. } => 2.0,
-    }
-}
+use crate::scene::{Body, Scene};
 
 /// What the program and its libraries take before they do anything, bytes.
 const PROGRAM: f64 = 5e7;
@@ -37,8 +29,7 @@ impl Estimate {
     pub fn of(scene: &Scene, outline: &Outline) -> Self {
         let unknowns = outline.unknowns as f64;
         let face = 2.0 * (outline.face.edges + 1) as f64;
-        // A solution for new multipliers begins next to its end.
-        let newton = 4.0 + augmentations(scene);
+        let newton = 3.0;
         // Nested dissection in the plane: n^1.5 operations, n log n entries; about half of both when symmetric.
         let entries = |symmetry: f64| 8.0 * 5.0 * unknowns * unknowns.max(2.0).log2() * symmetry;
         let (matrix, vector) = (18.0 * 12.0 * unknowns, 8.0 * unknowns);

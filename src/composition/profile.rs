@@ -151,12 +151,12 @@ pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], face: Stretch) -> R
     };
     let survey = survey(&*profile, face).map_err(|error| wrong("profile", error.to_string()))?;
     let pressed = pressed_end(&*profile, scene, face);
-    if let (Some(PressedEnd { x, time }), scene::Method::Augmented { .. }) = (pressed, &scene.contact.method) {
+    if let (Some(PressedEnd { x, time }), None) = (pressed, &scene.contact.penalty) {
         let reason = format!(
             "is contact without penetration, but from t = {time:.4e} s the indenter presses on the clamped end of the \
-             face at x = {x:?} m, which cannot give way; keep it off the ends, or say \"penalty\""
+             face at x = {x:?} m, which cannot give way; keep it off the ends, or give a penalty"
         );
-        return Err(Error::scene(file, "contact.method", reason));
+        return Err(Error::scene(file, "contact", reason));
     }
     Ok(Shape { profile, finest, detail, unit, seam, survey, pressed })
 }

@@ -1,28 +1,28 @@
-//! The MPJR interface element: a four-node, zero-thickness element with an embedded profile.
+//! The MPJR interface element: a zero-thickness element with an embedded profile.
 //!
-//! Bonari and Paggi (2020), Eqs. (1) to (6). The two lower nodes belong to the layer; the two upper ones to the rigid
-//! indenter, whose motion is prescribed, so they carry no unknowns and the relative displacement g = Q N L u reduces to
-//! the indenter's motion minus the layer's. In the element's frame (t along the contact face in the sense of +x, n
-//! outward from the layer), with everything at the undeformed place (x, z) of the point:
+//! Bonari and Paggi (2020), Eqs. (1) to (6). The lower nodes belong to the layer; the upper ones to the rigid indenter, whose
+//! motion is prescribed, so they carry no unknowns and the relative displacement g = Q N L u reduces to the indenter's motion
+//! minus the layer's. With everything at the undeformed place of the point, n the unit normal out of the layer there and
+//! T = 1 - n n' what is tangential:
 //!
 //! ```text
 //! c    = h(x - s) - D + z_top - z      vertical clearance; s sliding, D approach, z_top the summit of the face
-//! g*_n = c n_z - u.n                   Eq. (2), corrected normal gap
-//! p    = -alpha g*_n where g*_n < 0    Eq. (3), p >= 0 in compression
-//! w    = (v - du/dt).t                 slip rate; v = (ds/dt, -dD/dt), the indenter's velocity
-//! q    = friction law of p and w       Eq. (4), traction on the layer along t
-//! R_a  = integral of N_a (-q t + p n)  Eq. (6), internal minus external force on the lower nodes a = 1, 2
+//! g*_n = c n_z - u.n                   Eq. (2), corrected normal gap; o = -g*_n is the overlap
+//! p    = alpha o where o > 0           Eq. (3), p >= 0 in compression
+//! d    = T (V dt - du)                 slip over the step; V = (ds/dt, -dD/dt), the indenter's velocity
+//! q    = friction law of p and d       Eq. (4), traction on the layer
+//! R_a  = integral of -N_a (q - p n)    Eq. (6), internal minus external force on the lower nodes a
 //! ```
 //!
-//! On a flat face t = x, n = z, z = z_top. On a curved one the gap is the projection of the vertical clearance on the
+//! On a flat face n = z, z = z_top. On a curved one the gap is the projection of the vertical clearance on the
 //! local normal, which is the distance to second order in the slopes of face and profile.
 //!
 //! Ours rather than the paper's: the upper nodes are eliminated, the elevation of a curved face enters the gap, the
-//! quadrature may be nodal, and there may be a multiplier: p = lambda - alpha g*_n where that is positive.
+//! quadrature may be nodal, and so may the laws be exact: no penalty, no regularisation (crate::solve::traction).
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{SMatrix, SVector};
 
-use crate::friction::{Friction, Shear, Slip};
+use crate::friction::{Circumstances, Law};
 
 /// One integration point: where the profile is evaluated and what it weighs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,103 +53,66 @@ impl Quadrature {
     }
 }
 
-/// The paper's Q: turns (x, z) into (t, n); its rows are t and n.
-pub type Frame = Matrix2<f64>;
-
-/// The frame of an element along the unit vector `tangent`.
-pub fn frame(tangent: Vector2<f64>) -> Frame {
-    Frame::new(tangent.x, tangent.y, -tangent.y, tangent.x)
-}
-
-/// The indenter over one point of the face.
+/// How layer and indenter have moved against each other at one point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Over {
-    /// Vertical clearance c over the undeformed face, m.
-    pub clearance: f64,
-    /// (ds/dt, -dD/dt) over the step, m/s.
-    pub velocity: Vector2<f64>,
-    /// The length of the step, s; 0 where it is over.
-    pub dt: f64,
-    /// See [`Slip::resolution`], m/s.
-    pub resolution: f64,
-}
-
-/// The layer at one point of the face, in (x, z).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Under {
-    /// m
-    pub displacement: Vector2<f64>,
-    /// m/s
-    pub rate: Vector2<f64>,
-}
-
-/// What the layer and the indenter do at one point, in the element's frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Motion {
-    /// c n_z: the gap over the undeformed face, m.
-    pub clearance: f64,
-    /// u.n, m
-    pub normal: f64,
-    /// At the slip rate w.
-    pub slip: Slip,
-}
-
-impl Motion {
-    /// The relative motion in the frame, Eq. (2), of a point that had slipped by `stuck` (m) while it was to stick.
-    pub fn new(frame: &Frame, over: Over, under: Under, stuck: f64) -> Self {
-        let displacement = frame * under.displacement;
-        let rate = (frame * (over.velocity - under.rate)).x;
-        let slip = Slip { rate, dt: over.dt, stuck, resolution: over.resolution };
-        Self { clearance: over.clearance * frame[(1, 1)], normal: displacement.y, slip }
-    }
-
-    /// How far the indenter is in the layer, m; negative where there is a gap.
-    pub fn penetration(&self) -> f64 {
-        self.normal - self.clearance
-    }
-}
-
-/// What a point resists penetration with.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Resistance {
-    /// Penalty alpha, Pa/m.
-    pub penalty: f64,
-    /// Multiplier lambda >= 0, Pa; 0 but for the augmented Lagrangian.
-    pub multiplier: f64,
+pub struct Relative<const D: usize> {
+    /// o, m: how far the indenter is in the layer; negative where there is a gap.
+    pub overlap: f64,
+    /// What a friction law answers to, m: the slip over the step, and before it what the law holds elastically.
+    pub slip: SVector<f64, D>,
+    /// n
+    pub normal: SVector<f64, D>,
 }
 
 /// Tractions at one point and their derivatives.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Traction {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Traction<const D: usize> {
     /// p, Pa, positive in compression.
     pub pressure: f64,
-    /// q and what goes with it; q on the layer, positive along t.
-    pub shear: Shear,
-    /// dp/d(u.n), Pa/m
-    pub pressure_normal: f64,
+    /// q, Pa, on the layer.
+    pub shear: SVector<f64, D>,
+    /// Whether the point sticks.
+    pub sticks: bool,
+    /// -d(q - p n)/du when the slip is minus the tangential part of the displacement, Pa/m. Not symmetric under friction.
+    pub tangent: SMatrix<f64, D, D>,
 }
 
-/// The penalty and friction laws at one point, Eqs. (3) and (4).
-pub fn traction(motion: Motion, resistance: Resistance, friction: Option<&Friction>) -> Traction {
-    let Resistance { penalty, multiplier } = resistance;
-    let pressure = multiplier + penalty * motion.penetration();
-    if pressure <= 0.0 {
-        return Traction::default();
+impl<const D: usize> Default for Traction<D> {
+    fn default() -> Self {
+        Self { pressure: 0.0, shear: SVector::zeros(), sticks: false, tangent: SMatrix::zeros() }
     }
-    let shear = friction.map_or(Shear::default(), |law| law.shear(pressure, motion.slip));
-    Traction { pressure, shear, pressure_normal: penalty }
 }
 
-impl Traction {
-    /// Internal minus external force per unit length, -q t + p n, as (t, n), Pa.
-    pub fn residual(&self) -> Vector2<f64> {
-        Vector2::new(-self.shear.shear, self.pressure)
+impl<const D: usize> Traction<D> {
+    /// The penalty and friction laws at one point, Eqs. (3) and (4), for displacements that are known; `at` says the step.
+    pub fn new(relative: Relative<D>, penalty: f64, law: Option<&dyn Law>, at: Circumstances) -> Self {
+        let Relative { overlap, slip, normal } = relative;
+        let pressure = penalty * overlap;
+        if pressure <= 0.0 {
+            return Self::default();
+        }
+        let normally = normal * normal.transpose();
+        let stiff = normally * penalty;
+        let Some(law) = law else { return Self { pressure, tangent: stiff, ..Self::default() } };
+        let at = Circumstances { pressure, ..at };
+        let length = slip.norm();
+        let shear = law.shear(at, length);
+        let direction = if length > 0.0 { slip / length } else { SVector::zeros() };
+        let across = if length > 0.0 { shear.shear / length } else { shear.by_slip };
+        let along = direction * direction.transpose() * (shear.by_slip - across);
+        let tangential = (SMatrix::identity() - normally) * across + along;
+        let drag = direction * normal.transpose() * (shear.by_pressure * penalty);
+        Self {
+            pressure,
+            shear: direction * shear.shear,
+            sticks: law.sticks(at, length),
+            tangent: stiff + tangential - drag,
+        }
     }
 
-    /// d(residual)/du in (t, n), Pa/m, when du/dt moves with u at `shift` = 1/dt, 1/s. Not symmetric under friction.
-    pub fn tangent(&self, shift: f64) -> Matrix2<f64> {
-        let Self { shear, pressure_normal, .. } = self;
-        Matrix2::new(shear.by_rate * shift, -shear.by_pressure * pressure_normal, 0.0, *pressure_normal)
+    /// q - p n, Pa.
+    pub fn on_layer(&self, normal: &SVector<f64, D>) -> SVector<f64, D> {
+        self.shear - normal * self.pressure
     }
 }
 
@@ -158,35 +121,35 @@ mod tests {
     use super::*;
     use crate::friction::{CoulombTanh, ElasticSlip};
 
-    /// The tangent against central differences, without friction and with each law, sticking and slipping, in and out of
-    /// contact, with and without a multiplier.
+    /// The tangent against central differences in the plane and in space, without friction and with each law, sticking and
+    /// slipping, in and out of contact, under a normal that leans.
     #[test]
-    fn tangent_is_the_derivative_of_the_residual() {
-        let tanh = Friction::CoulombTanh(CoulombTanh { coefficient: 0.3, regularisation: 1e-3 });
-        let elastic = Friction::ElasticSlip(ElasticSlip { coefficient: 0.3, elastic_slip: 1e-4 });
-        let (dt, drive, clearance, stuck) = (0.1, 2e-3, -1e-4, 4e-5);
-        for law in [None, Some(&tanh), Some(&elastic)] {
-            for (ut, un, multiplier) in [
-                (1e-5, 2e-5, 0.0),
-                (1.9e-4, -3e-5, 7.0),
-                (2.3e-4, -3e-5, 0.0),
-                (4e-4, 1e-4, 3.0),
-                (-2e-4, 5e-5, 0.0),
-                (1e-4, -2e-4, 0.0),
-                (2.3e-4, -2e-4, 200.0),
-            ] {
-                let resistance = Resistance { penalty: 1e6, multiplier };
-                let at = |u: Vector2<f64>| {
-                    let slip = Slip { rate: drive - u.x / dt, dt, stuck, resolution: 0.0 };
-                    traction(Motion { clearance, normal: u.y, slip }, resistance, law)
+    fn tangent_is_the_derivative_of_the_traction() {
+        check::<2>(SVector::from([0.28, 0.96]), SVector::from([0.96, -0.28]));
+        check::<3>(SVector::from([0.28, 0.0, 0.96]), SVector::from([0.576, -0.8, -0.168]));
+    }
+
+    fn check<const D: usize>(normal: SVector<f64, D>, along: SVector<f64, D>) {
+        let tanh = CoulombTanh { coefficient: 0.3, regularisation: 1e-3 };
+        let elastic = ElasticSlip { coefficient: 0.3, elastic_slip: 1e-4 };
+        let at = Circumstances { pressure: 0.0, dt: 0.1, resolution: 0.0 };
+        let laws: [Option<&dyn Law>; 3] = [None, Some(&tanh), Some(&elastic)];
+        for law in laws {
+            for (slip, overlap) in [(3e-5, 1e-4), (-9e-5, 7e-5), (2.3e-4, 3e-5), (-4e-4, 1e-4), (1e-4, -5e-5)] {
+                let on = |du: SVector<f64, D>| {
+                    let tangential = du - normal * normal.dot(&du);
+                    let relative =
+                        Relative { overlap: overlap + normal.dot(&du), slip: along * slip - tangential, normal };
+                    Traction::new(relative, 1e6, law, at)
                 };
-                let u = Vector2::new(ut, un);
-                let step = 1e-10;
-                let column =
-                    |e: Vector2<f64>| (at(u + e * step).residual() - at(u - e * step).residual()) / (2.0 * step);
-                let numeric = Matrix2::from_columns(&[column(Vector2::x()), column(Vector2::y())]);
-                let exact = at(u).tangent(1.0 / dt);
-                assert!((numeric - exact).norm() <= 1e-6 * exact.norm(), "{numeric} {exact}");
+                let exact = on(SVector::zeros()).tangent;
+                for column in 0..D {
+                    let mut du = SVector::<f64, D>::zeros();
+                    du[column] = 1e-10;
+                    let change = on(-du).on_layer(&normal) - on(du).on_layer(&normal);
+                    let apart = (change / 2e-10 - exact.column(column)).norm();
+                    assert!(apart <= 1e-6 * exact.norm(), "{law:?} {slip} {overlap}: {apart}");
+                }
             }
         }
     }

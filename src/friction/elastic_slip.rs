@@ -1,11 +1,11 @@
 //! Coulomb's law regularised by the slip.
 
-use super::{Shear, Slip};
+use super::{Circumstances, Law, Shear};
 
-/// Coulomb's law with an elastic part e of the slip, at most gamma either way:
+/// Coulomb's law with an elastic part e of the slip, at most gamma long:
 ///
 /// ```text
-/// q = f p e/gamma,    e = e_n + w dt returned to [-gamma, gamma];    |e| < gamma: sticks
+/// |q| = f p min(m/gamma, 1),    m = |e_n + slip of the step|,    e = its direction times min(m, gamma);    m < gamma: sticks
 /// ```
 ///
 /// Rate-independent: return mapping (Simo and Hughes, Computational Inelasticity, 1.4; Wriggers, Computational Contact
@@ -21,31 +21,36 @@ pub struct ElasticSlip {
     pub elastic_slip: f64,
 }
 
-impl ElasticSlip {
-    /// `stuck` is e; the rest of the slip, w dt - (e - e_n), is what dissipates.
-    pub(super) fn shear(&self, pressure: f64, Slip { rate, dt, stuck, .. }: Slip) -> Shear {
-        let Self { coefficient, elastic_slip } = *self;
-        let trial = stuck + rate * dt;
-        let sticks = trial.abs() < elastic_slip;
-        let stuck = trial.clamp(-elastic_slip, elastic_slip);
-        let direction = stuck / elastic_slip;
-        Shear {
-            shear: coefficient * pressure * direction,
-            by_pressure: coefficient * direction,
-            by_rate: if sticks { coefficient * pressure / elastic_slip * dt } else { 0.0 },
-            stuck,
-            sticks,
+impl Law for ElasticSlip {
+    fn coefficient(&self) -> f64 {
+        self.coefficient
+    }
+
+    fn shear(&self, at: Circumstances, slip: f64) -> Shear {
+        let bound = self.coefficient * at.pressure;
+        match self.sticks(at, slip) {
+            true => Shear {
+                shear: bound * (slip / self.elastic_slip),
+                by_slip: bound / self.elastic_slip,
+                by_pressure: self.coefficient * (slip / self.elastic_slip),
+            },
+            false => Shear { shear: bound, by_slip: 0.0, by_pressure: self.coefficient },
         }
     }
 
-    /// Which way a point slips; 0 where it sticks.
-    pub(super) fn direction(&self, Slip { rate, dt, stuck, .. }: Slip) -> f64 {
-        let trial = stuck + rate * dt;
-        if trial.abs() < self.elastic_slip { 0.0 } else { trial.signum() }
+    fn sharpness(&self, _dt: f64) -> f64 {
+        self.elastic_slip
     }
 
-    /// What sticks goes on to, and so does what slips when the indenter turns back.
-    pub(super) fn expected(&self, Slip { stuck, .. }: Slip, drive: f64) -> Option<f64> {
-        (stuck.abs() < self.elastic_slip || stuck * drive < 0.0).then_some(0.0)
+    fn sticks(&self, _at: Circumstances, slip: f64) -> bool {
+        slip < self.elastic_slip
+    }
+
+    fn holds(&self) -> bool {
+        true
+    }
+
+    fn elastic(&self, slip: f64) -> f64 {
+        slip.min(self.elastic_slip)
     }
 }

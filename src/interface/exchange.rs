@@ -1,12 +1,20 @@
 //! The energy that passes through the contact face.
 //!
+//! With the tractions of a point as the mean of both ends of a step, dD, dh and V dt what the indenter does in it:
+//!
 //! ```text
-//! work of the indenter over a step:  N dD + (Q + integral of p dh/dx) ds, the forces as the mean of both ends
-//! friction over a step:            integral of q times the slip that dissipates, with q as the mean of both ends
-//! penalty:                           integral of 1/2 p times the penetration, and what elastic slip has stored
+//! work of the indenter:  integral of p (n_z (dD - dh) + dg) + q.V dt, dg the change of the gap where there is one
+//! friction:              integral of q.d, d the slip that dissipates; at least 0
+//! penalty:               integral of 1/2 p o, and what elastic slip has stored
 //! ```
+//!
+//! dh, the change of the profile over the point, rather than its slope: it serves kinks and long steps. No law lets q work against
+//! the slip that it ends. Where the old q does, by more than the new one works along it, q has turned within the step, and their
+//! mean says nothing of when: then friction takes nothing. So what it takes never falls.
 
-use super::{Answer, Interface, Surface};
+use nalgebra::Vector2;
+
+use super::{Interface, State};
 use crate::energy::FaceEnergy;
 use crate::error::Result;
 use crate::loading::Placement;
@@ -18,20 +26,15 @@ pub struct Exchange {
     energy: FaceEnergy,
     /// Stored by elastic slip since t = 0, J/m.
     elastic: f64,
-    /// N, N/m
-    normal: f64,
-    /// Q + integral of p dh/dx, N/m
-    along: f64,
-    /// Where the indenter is.
-    place: Placement,
-    /// q at the integration points, Pa.
-    shear: Vec<f64>,
+    /// h over each point, m.
+    heights: Vec<f64>,
 }
 
 impl Exchange {
-    /// Of a face at rest.
-    pub fn new(interface: &Interface) -> Self {
-        Self { shear: vec![0.0; interface.acting.points.len()], ..Self::default() }
+    /// Of a face at rest, with the indenter where it begins.
+    pub fn new(interface: &mut Interface) -> Result<Self> {
+        interface.place(Placement::default())?;
+        Ok(Self { heights: heights(interface), ..Self::default() })
     }
 
     /// What went through.
@@ -39,42 +42,50 @@ impl Exchange {
         self.energy
     }
 
-    /// Takes the account to the end of a step that is about to be committed, where the face is as given.
-    pub fn advance(&mut self, interface: &mut Interface, place: Placement, surface: &Surface) -> Result<()> {
-        interface.attempt(place)?;
-        let (mut normal, mut along, mut penalty) = (0.0, 0.0, 0.0);
-        let law = interface.friction();
-        for (answer, before) in interface.answers(&interface.acting, place, surface).zip(&mut self.shear) {
-            let Answer { point, elevation, motion, traction } = answer;
-            let stored = law.map_or(0.0, |law| law.stored(motion.slip, traction.shear.stuck));
-            let mean = point.weight * 0.5 * (*before + traction.shear.shear);
-            self.energy.friction += mean * (motion.slip.rate * place.dt - stored);
-            self.elastic += mean * stored;
-            penalty += point.weight * 0.5 * traction.pressure * motion.penetration();
-            *before = traction.shear.shear;
-            let [down, tangential, hysteretic] = point.forces(&traction, elevation.slope);
-            normal += down;
-            along += tangential + hysteretic;
+    /// Takes the account to the end of a step that is about to be committed.
+    pub fn advance(&mut self, interface: &mut Interface, place: Placement, states: &[State<2>]) -> Result<()> {
+        interface.place(place)?;
+        let dt = place.dt;
+        let way = Vector2::new(place.sliding_rate, -place.approach_rate) * dt;
+        let mut penalty = 0.0;
+        let heights = heights(interface);
+        for (i, (before, after)) in interface.states().iter().zip(states).enumerate() {
+            let point = &interface.points().all()[i];
+            let opened = before.overlap.min(0.0) - after.overlap.min(0.0);
+            let closed = point.normal.y * (place.approach_rate * dt - (heights[i] - self.heights[i])) + opened;
+            let (pressure, shear) = (0.5 * (before.pressure + after.pressure), 0.5 * (before.shear + after.shear));
+            let held = |state: &State<2>| interface.friction().map_or(Vector2::zeros(), |law| state.elastic(law));
+            let stored = held(after) - held(before);
+            self.elastic += point.weight * shear.dot(&stored);
+            let lost = after.slip - stored;
+            // What friction is not let give back, the indenter is not let take.
+            let taken = shear.dot(&lost).max(0.0);
+            self.energy.friction += point.weight * taken;
+            self.energy.work += point.weight * (pressure * closed + shear.dot(&(way - lost)) + taken);
+            penalty += 0.5 * point.weight * after.pressure * after.overlap;
         }
+        self.heights = heights;
         self.energy.penalty = penalty + self.elastic;
-        self.energy.work += 0.5 * (self.normal + normal) * (place.approach - self.place.approach)
-            + 0.5 * (self.along + along) * (place.sliding - self.place.sliding);
-        (self.normal, self.along, self.place) = (normal, along, place);
         Ok(())
     }
 
     /// Adds the account to a snapshot.
     pub fn save(&self, snapshot: &mut Snapshot) {
-        let Self { energy: FaceEnergy { work, friction, penalty }, elastic, normal, along, .. } = self;
-        snapshot.put("face-energy", vec![*work, *friction, *penalty, *elastic, *normal, *along]);
-        snapshot.put("face-shear", self.shear.clone());
+        let Self { energy: FaceEnergy { work, friction, penalty }, elastic, .. } = self;
+        snapshot.put("face-energy", vec![*work, *friction, *penalty, *elastic]);
+        snapshot.put("face-heights", self.heights.clone());
     }
 
-    /// Takes the account from a snapshot of a state where the indenter is at `place`.
-    pub fn restore(&mut self, snapshot: &Snapshot, place: Placement) -> Result<()> {
-        let [work, friction, penalty, elastic, normal, along] = snapshot.numbers("face-energy")?;
+    /// Takes the account from a snapshot.
+    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
+        let [work, friction, penalty, elastic] = snapshot.numbers("face-energy")?;
         self.energy = FaceEnergy { work, friction, penalty };
-        (self.elastic, self.normal, self.along, self.place) = (elastic, normal, along, place);
-        snapshot.fill("face-shear", &mut self.shear)
+        self.elastic = elastic;
+        snapshot.fill("face-heights", &mut self.heights)
     }
+}
+
+/// h over each point where the indenter was placed last, m.
+fn heights(interface: &Interface) -> Vec<f64> {
+    interface.points().elevations().iter().map(|elevation| elevation.height).collect()
 }

@@ -13,14 +13,19 @@ use super::vector::Vector;
 use crate::error::Result;
 
 /// The Cholesky factorisation of a symmetric positive definite matrix, by MUMPS.
+///
+/// Of the matrix over a power of two that brings it near 1, which costs no digit: MUMPS and LAPACK hold pivots against absolute
+/// sizes, so that a matrix in other units would have another inverse.
 pub struct Cholesky {
     raw: ffi::Mat,
+    /// The power of two.
+    unit: f64,
 }
 
 impl Cholesky {
     /// Factorises `matrix`, which must have been declared positive definite.
     pub fn new(matrix: &Matrix) -> Result<Self> {
-        let factor = Self::symbolic(matrix, |_| Ok(()))?;
+        let mut factor = Self::symbolic(matrix, |_| Ok(()))?;
         factor.numeric(matrix)?;
         Ok(factor)
     }
@@ -28,7 +33,8 @@ impl Cholesky {
     /// x = matrix^-1 b.
     pub fn solve(&self, b: &Vector, x: &mut Vector) -> Result<()> {
         // SAFETY: a factorised matrix and two distinct vectors of its layout.
-        check(unsafe { ffi::MatSolve(self.raw, b.raw(), x.raw()) })
+        check(unsafe { ffi::MatSolve(self.raw, b.raw(), x.raw()) })?;
+        x.scale(1.0 / self.unit)
     }
 
     /// The entries of matrix^-1 in the given rows (ascending) and columns, column after column; on the first rank,
@@ -49,7 +55,9 @@ impl Cholesky {
             check(ffi::MatMumpsSetIcntl(self.raw, DISTRIBUTED, distributed))?;
             check(code)?;
         }
-        if comm.rank() == 0 { wanted.values(rows, columns) } else { Ok(Vec::new()) }
+        let mut values = if comm.rank() == 0 { wanted.values(rows, columns)? } else { Vec::new() };
+        values.iter_mut().for_each(|value| *value /= self.unit);
+        Ok(values)
     }
 
     /// How many rows it has.
@@ -64,7 +72,7 @@ impl Cholesky {
     /// complement onto those unknowns. On one rank only.
     pub fn with_inverse_schur(matrix: &Matrix, kept: &[i32]) -> Result<(Self, Vec<f64>)> {
         let count = kept.len() as ffi::PetscInt;
-        let factor = Self::symbolic(matrix, |raw| {
+        let mut factor = Self::symbolic(matrix, |raw| {
             let mut set = null_mut();
             // SAFETY: the index set copies `kept`; the factor takes a reference to it.
             unsafe {
@@ -82,7 +90,8 @@ impl Cholesky {
             check(ffi::MatFactorInvertSchurComplement(factor.raw))?;
             check(ffi::MatFactorGetSchurComplement(factor.raw, &mut schur, null_mut()))?;
             check(ffi::MatDenseGetArrayRead(schur, &mut values))?;
-            let inverse = std::slice::from_raw_parts(values, kept.len() * kept.len()).to_vec();
+            let lent = std::slice::from_raw_parts(values, kept.len() * kept.len());
+            let inverse = lent.iter().map(|value| value / factor.unit).collect();
             check(ffi::MatDenseRestoreArrayRead(schur, &mut values))?;
             let inverted = ffi::MatFactorSchurStatus_MAT_FACTOR_SCHUR_INVERTED;
             check(ffi::MatFactorRestoreSchurComplement(factor.raw, &mut schur, inverted))?;
@@ -96,16 +105,24 @@ impl Cholesky {
         unsafe {
             let kind = ffi::MatFactorType_MAT_FACTOR_CHOLESKY;
             check(ffi::MatGetFactor(matrix.raw(), c"mumps".as_ptr(), kind, &mut raw))?;
-            let factor = Self { raw };
+            let factor = Self { raw, unit: 1.0 };
             prepare(raw)?;
             check(ffi::MatCholeskyFactorSymbolic(raw, matrix.raw(), null_mut(), &default_settings()?))?;
             Ok(factor)
         }
     }
 
-    fn numeric(&self, matrix: &Matrix) -> Result<()> {
-        // SAFETY: the factor was made for this matrix.
-        check(unsafe { ffi::MatCholeskyFactorNumeric(self.raw, matrix.raw(), &default_settings()?) })
+    fn numeric(&mut self, matrix: &Matrix) -> Result<()> {
+        let mut norm = 0.0;
+        // SAFETY: the factor was made for this matrix, which has its own values back to the last bit when this is over.
+        unsafe {
+            check(ffi::MatNorm(matrix.raw(), ffi::NormType_NORM_INFINITY, &mut norm))?;
+            self.unit = if norm.is_normal() { norm.log2().floor().exp2() } else { 1.0 };
+            check(ffi::MatScale(matrix.raw(), 1.0 / self.unit))?;
+            let code = ffi::MatCholeskyFactorNumeric(self.raw, matrix.raw(), &default_settings()?);
+            check(ffi::MatScale(matrix.raw(), self.unit))?;
+            check(code)
+        }
     }
 }
 

@@ -18,5 +18,7 @@ pub use factor::{Cholesky, DenseLu};
 pub use matrix::{Matrix, Pattern};
 pub use partition::partition;
 pub use session::{Session, blas_library, peak_memory, reset_peak_memory};
-pub use transient::{Accepted, Attempt, CUT, Implicit, Integrator, Judgement, Linear, Next, Settings, Step, Verdict};
+pub use transient::{
+    Accepted, Attempt, CUT, Implicit, Integrator, Judgement, Linear, Next, Search, Settings, Step, Verdict,
+};
 pub use vector::{Gather, Vector};

@@ -14,7 +14,7 @@ use super::ffi;
 use super::matrix::Matrix;
 use super::vector::Vector;
 use crate::error::{Error, Result};
-use callbacks::{check_stage, convergence, guess, limit, multiply, post_step, residual, solve, tangent};
+use callbacks::{check_stage, convergence, guess, limit, multiply, post_step, residual, search, solve, tangent};
 
 /// One attempted step: it ends at `t` and is `dt` long, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,7 +76,7 @@ pub enum Judgement {
     Retry(f64),
 }
 
-/// The type of a preconditioner that is the problem's own.
+/// The type of a preconditioner, and of a line search, that is the problem's own.
 const SHELL: &CStr = c"shell";
 
 /// The fraction of its length with which a step is tried again when Newton's method fails.
@@ -111,6 +111,10 @@ pub trait Implicit {
     fn limit(&mut self, _step: Step, _u: &Vector, _decrement: &mut Vector) -> Result<bool> {
         Ok(false)
     }
+    /// Takes `u` as far along `u` - `decrement` as it likes, and `f` to the residual there; for [`Search::Own`].
+    fn search(&mut self, _step: Step, _u: &mut Vector, _decrement: &Vector, _f: &mut Vector) -> Result<()> {
+        Err(Error::Internal("this problem has no line search of its own".into()))
+    }
     /// Judges the Newton iterate whose residual norm is `norm`.
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
     /// Judges a step that converged to `u`, before it is accepted.
@@ -122,14 +126,15 @@ pub trait Implicit {
 }
 
 /// How the linear systems are solved, unless PETSc options say otherwise.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Linear {
     /// By FGMRES, with the problem's own solve as preconditioner; the tangent is a matrix.
     Preconditioned,
     /// By the problem itself, exactly; the tangent is a [`Matrix::shell`].
     Own,
-    /// By GMRES, with the problem's own solve as preconditioner; the tangent is a [`Matrix::shell`].
-    OwnIterative,
+    /// By FGMRES, with the problem's own solve as preconditioner; the tangent is a [`Matrix::shell`]. Each system is solved to
+    /// this share of its right-hand side at least, and further as Newton's method comes nearer (Eisenstat and Walker).
+    OwnIterative(f64),
 }
 
 /// How the nonlinear system is solved, unless PETSc options say otherwise.
@@ -139,8 +144,19 @@ pub struct Settings {
     pub linear: Linear,
     /// Newton iterations per attempt before the step is cut.
     pub max_newton: usize,
-    /// Whether Newton's steps are taken whole, or as long as makes the residual least.
-    pub whole_steps: bool,
+    /// How long Newton's steps are.
+    pub search: Search,
+}
+
+/// How long Newton's steps are, unless PETSc options say otherwise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Search {
+    /// Whole.
+    Whole,
+    /// As long as makes the residual least.
+    Least,
+    /// As the problem says.
+    Own,
 }
 
 /// A TS with its SNES, KSP and PC.
@@ -169,7 +185,7 @@ impl Integrator {
     /// [`Error::Usage`] when PETSc does not take the value of an option.
     pub fn new(comm: &impl AsCommunicator, settings: Settings, jacobian: &mut Matrix) -> Result<Self> {
         let mut ts = null_mut();
-        let shell = matches!(settings.linear, Linear::Own | Linear::OwnIterative);
+        let shell = matches!(settings.linear, Linear::Own | Linear::OwnIterative(_));
         let (mut snes, mut search, mut ksp, mut pc) = (null_mut(), null_mut(), null_mut(), null_mut());
         // SAFETY: places for the handles; those got from TS stay TS's own.
         unsafe {
@@ -190,7 +206,11 @@ impl Integrator {
             check(ffi::SNESSetTolerances(snes, 0.0, 0.0, 0.0, settings.max_newton as i32, -1))?;
             check(ffi::SNESGetLineSearch(snes, &mut search))?;
             // Where friction turns between stick and slip the norm must rise before it falls, and backtracking stalls.
-            let line_search = if settings.whole_steps { c"basic" } else { c"l2" };
+            let line_search = match settings.search {
+                Search::Whole => c"basic",
+                Search::Least => c"l2",
+                Search::Own => SHELL,
+            };
             check(ffi::SNESLineSearchSetType(search, line_search.as_ptr()))?;
             check(ffi::SNESGetKSP(snes, &mut ksp))?;
             check(ffi::KSPGetPC(ksp, &mut pc))?;
@@ -198,10 +218,14 @@ impl Integrator {
                 // The preconditioner is nearly exact, so that this is one iteration, or two.
                 Linear::Preconditioned => (c"fgmres", 1e-10),
                 Linear::Own => (c"preonly", 1e-9),
-                Linear::OwnIterative => (c"gmres", 1e-9),
+                Linear::OwnIterative(reduction) => (c"fgmres", reduction),
             };
             check(ffi::KSPSetType(ksp, method.as_ptr()))?;
             check(ffi::KSPSetTolerances(ksp, reduction, -2.0, -2.0, MOST_KRYLOV))?;
+            if let Linear::OwnIterative(most) = settings.linear {
+                check(ffi::SNESKSPSetUseEW(snes, ffi::PetscBool_PETSC_TRUE))?;
+                check(ffi::SNESKSPSetParametersEW(snes, 2, most, most, -2.0, -2.0, -2.0, -2.0))?;
+            }
             check(ffi::PCSetType(pc, SHELL.as_ptr()))?;
             check(ffi::TSSetFromOptions(ts)).map_err(refused)?;
             if !shell {
@@ -271,9 +295,11 @@ impl Integrator {
             check(ffi::TSGetSNES(ts, &mut snes))?;
             check(ffi::SNESSetConvergenceTest(snes, Some(convergence::<P>), pointer, None))?;
             check(ffi::SNESSetComputeInitialGuess(snes, Some(guess::<P>), pointer))?;
-            let (mut search, mut ksp, mut pc) = (null_mut(), null_mut(), null_mut());
-            check(ffi::SNESGetLineSearch(snes, &mut search))?;
-            check(ffi::SNESLineSearchSetPreCheck(search, Some(limit::<P>), pointer))?;
+            let (mut line_search, mut ksp, mut pc) = (null_mut(), null_mut(), null_mut());
+            check(ffi::SNESGetLineSearch(snes, &mut line_search))?;
+            check(ffi::SNESLineSearchSetPreCheck(line_search, Some(limit::<P>), pointer))?;
+            // Nothing where another line search was chosen.
+            check(ffi::SNESLineSearchShellSetUserFunc(line_search, Some(search::<P>), pointer))?;
             check(ffi::SNESGetKSP(snes, &mut ksp))?;
             check(ffi::KSPGetPC(ksp, &mut pc))?;
             // Nothing where an option chose another preconditioner.

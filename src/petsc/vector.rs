@@ -228,6 +228,15 @@ impl Gather {
     }
 }
 
+impl Gather {
+    /// The entries of `source`.
+    pub fn all(&mut self, source: &Vector) -> Result<Vec<f64>> {
+        let mut values = vec![0.0; self.target.local_len()];
+        self.gather(source, &mut values)?;
+        Ok(values)
+    }
+}
+
 impl Drop for Gather {
     fn drop(&mut self) {
         // SAFETY: this handle owns the scatter.

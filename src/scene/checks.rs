@@ -4,7 +4,10 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use super::{Arm, Extend, Indenter, Layer, Material, Memory, Method, Phase, Scene, Sides, Stepping, When, keys};
+use super::{
+    Arm, Extend, Friction, Indenter, Layer, Material, Memory, Phase, Quadrature, Scene, Sides, Stepping, Strategy,
+    When, keys,
+};
 use crate::error::{Error, Result};
 
 /// The key and what is wrong with it.
@@ -19,6 +22,7 @@ pub(super) fn all(scene: &Scene, file: &Path) -> Result<()> {
         .and_then(|()| layer(&|layer| period(layer, &scene.indenter)))
         .and_then(|()| times(&scene.phases))
         .and_then(|()| adaptive(scene))
+        .and_then(|()| exact_laws(scene))
         .and_then(|()| scene.phases.iter().try_for_each(|phase| approach(phase, scene)))
         .and_then(|()| moments(&scene.output.bulk_at, &scene.phases))
         .map_err(|(key, reason)| Error::scene(file, key, reason))
@@ -160,8 +164,7 @@ fn times(phases: &[Phase]) -> Check {
 }
 
 /// Adaptive steps see what is not straight in the path of the face, for which the exponential memory is exact; the error
-/// of backward Euler's memory they would not see where the face is held and the stress relaxes. A step that is solved again
-/// with other multipliers must not change its length meanwhile.
+/// of backward Euler's memory they would not see where the face is held and the stress relaxes.
 fn adaptive(scene: &Scene) -> Check {
     let adaptive = |phase: &&Phase| matches!(phase.stepping, Stepping::Tolerance(_));
     let Some(phase) = scene.phases.iter().find(adaptive) else { return Ok(()) };
@@ -170,10 +173,33 @@ fn adaptive(scene: &Scene) -> Check {
     if scene.materials.iter().any(first_order) {
         return fail(&key, "needs memory = \"exponential\" in the material; or give steps");
     }
-    if scene.contact.method != Method::Penalty {
-        return fail(&key, "needs method = \"penalty\" in contact; or give steps");
-    }
     Ok(())
+}
+
+/// Contact without penetration and Coulomb's law itself are met by tractions at nodes; where displacements decide them, or
+/// two points to an edge share its motion, they need numbers.
+fn exact_laws(scene: &Scene) -> Check {
+    let gauss = scene.contact.quadrature == Quadrature::Gauss;
+    let monolithic = scene.solver.strategy == Strategy::Monolithic;
+    let instead = match (gauss, monolithic) {
+        (false, false) => return Ok(()),
+        (true, _) => "or use \"nodal\" quadrature",
+        (false, true) => "or use the strategy \"condensed\"",
+    };
+    if scene.contact.penalty.is_none() {
+        let reason = format!(
+            "is required {} (tolerance = 1e-3 leaves a thousandth of the body's own compliance); {instead}",
+            if gauss { "by \"gauss\" quadrature" } else { "by the strategy \"monolithic\"" }
+        );
+        return fail("contact.penalty", reason);
+    }
+    match scene.friction {
+        Some(Friction::Coulomb { .. }) => {
+            let laws = "\"coulomb_elastic_slip\" (an elastic_slip of 1e-3 times coefficient times approach leaves a thousandth) or \"coulomb_tanh\"";
+            fail("friction.law", format!("must be {laws} here; {instead}"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The indenter neither passes the clamped face nor, as a circle, sinks in to its centre.

@@ -25,7 +25,7 @@ pub use include::{Load, include, open};
 pub use indenter::{Detrend, Extend, Indenter, Reading, Rms, Seam};
 pub(crate) use keys::nearest;
 pub use overrides::{get, set};
-pub use penalty::{added_compliance, penalty_for, penalty_on_mesh};
+pub use penalty::{added_compliance, penalty_for, penalty_on_mesh, shortest_step};
 pub use read::{from_table, parse, read, read_with};
 
 /// One scene: the layer, its material, the indenter, the contact, the loading history, and what to keep of it.
@@ -184,27 +184,11 @@ pub enum Memory {
 /// How non-penetration is enforced.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Contact {
-    /// p = -penalty * gap where gap < 0.
+    /// p = -penalty * gap where gap < 0; none = no penetration.
     #[serde(flatten)]
-    pub penalty: Penalty,
+    pub penalty: Option<Penalty>,
     /// Where the interface element evaluates the laws.
     pub quadrature: Quadrature,
-    /// What the penalty is for.
-    #[serde(flatten)]
-    pub method: Method,
-}
-
-/// What the penalty is for.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(tag = "method", rename_all = "snake_case")]
-pub enum Method {
-    /// It is what resists penetration.
-    Penalty,
-    /// It leads the augmented Lagrangian to contact without penetration; nodal quadrature only.
-    Augmented {
-        /// The penetration that is left, relative to the displacement of the face; in (0, 1).
-        augmentation_tolerance: f64,
-    },
 }
 
 /// The stiffness of the contact, or what decides it.
@@ -218,12 +202,12 @@ pub enum Penalty {
     Tolerance(f64),
 }
 
-impl Penalty {
-    /// Pa/m, where it is known without the mesh.
+impl Contact {
+    /// The penalty, Pa/m, where there is one that is known without the mesh.
     pub fn stiffness(&self) -> Option<f64> {
-        match self {
-            Self::Stiffness(stiffness) => Some(*stiffness),
-            Self::Tolerance(_) => None,
+        match self.penalty {
+            Some(Penalty::Stiffness(stiffness)) => Some(stiffness),
+            Some(Penalty::Tolerance(_)) | None => None,
         }
     }
 }
@@ -257,13 +241,20 @@ pub enum Friction {
         /// m
         elastic_slip: f64,
     },
+    /// q = coefficient p where a point slips, and up to that where it sticks; coefficient >= 0.
+    Coulomb {
+        /// -
+        coefficient: f64,
+    },
 }
 
 impl Friction {
     /// The coefficient of friction.
     pub fn coefficient(&self) -> f64 {
         match *self {
-            Self::CoulombTanh { coefficient, .. } | Self::CoulombElasticSlip { coefficient, .. } => coefficient,
+            Self::CoulombTanh { coefficient, .. }
+            | Self::CoulombElasticSlip { coefficient, .. }
+            | Self::Coulomb { coefficient } => coefficient,
         }
     }
 }

@@ -12,8 +12,8 @@ use toml::Table;
 
 use super::keys::{self, Quantity, Section};
 use super::{
-    Body, Contact, Friction, Load, Material, Method, Output, Penalty, Quadrature, Scene, Solver, Source, Strategy,
-    When, checks, include, overrides, penalty_for,
+    Body, Contact, Friction, Load, Material, Output, Penalty, Phase, Quadrature, Scene, Solver, Source, Strategy, When,
+    checks, include, overrides, penalty_for, shortest_step,
 };
 use crate::error::{Error, Result};
 
@@ -89,7 +89,7 @@ pub fn from_table(table: &Table, file: &Path) -> Result<Scene> {
     let materials = body::materials(&root, &body, super::material::loading(&phases).as_ref())?;
     let mut scene = Scene {
         indenter: indenter::read(&root.section("indenter")?)?,
-        contact: contact(&root.section("contact")?, &body, &materials)?,
+        contact: contact(&root.section("contact")?, &body, &materials, &phases)?,
         friction: root.optional_section("friction")?.as_ref().map(friction).transpose()?,
         phases,
         solver: solver(solver_section.as_ref(), preset)?,
@@ -116,54 +116,43 @@ const COUNT: std::ops::RangeInclusive<usize> = 1..=usize::MAX;
 const TOLERANCE: Quantity =
     Quantity { what: "a relative tolerance above 0 and below 1", accepts: |value| value > 0.0 && value < 1.0 };
 
-fn contact(section: &Section, body: &Body, materials: &[Material]) -> Result<Contact> {
+fn contact(section: &Section, body: &Body, materials: &[Material], phases: &[Phase]) -> Result<Contact> {
     const QUADRATURES: [(&str, Quadrature); 2] = [("nodal", Quadrature::Nodal), ("gauss", Quadrature::Gauss)];
 
     section.only(&["penalty", "tolerance", "quadrature", "method", "augmentation_tolerance"])?;
     let quadrature = section.optional_choice("quadrature", &QUADRATURES, &[])?.unwrap_or(Quadrature::Nodal);
-    Ok(Contact { penalty: penalty(section, body, materials)?, quadrature, method: method(section, quadrature)? })
+    Ok(Contact { penalty: penalty(section, body, materials, phases)?, quadrature })
 }
 
-/// How the penalty is used.
-fn method(section: &Section, quadrature: Quadrature) -> Result<Method> {
-    const TOLERANCE: Quantity =
-        Quantity { what: "a relative tolerance above 0 and below 1", accepts: |value| value > 0.0 && value < 1.0 };
-
-    let augmented =
-        section.optional_choice("method", &[("penalty", false), ("augmented", true)], &[])?.unwrap_or(false);
-    let tolerance = section.optional_number("augmentation_tolerance", TOLERANCE)?;
-    match (augmented, tolerance) {
-        (false, None) => Ok(Method::Penalty),
-        (false, Some(_)) => Err(section.error("augmentation_tolerance", "is for method = \"augmented\"")),
-        (true, _) if quadrature == Quadrature::Gauss => {
-            let reason = "\"augmented\" cannot hold two points to an edge whose displacement is linear; use \"nodal\" quadrature";
-            Err(section.error("method", reason))
-        }
-        (true, tolerance) => Ok(Method::Augmented { augmentation_tolerance: tolerance.unwrap_or(1e-5) }),
-    }
-}
-
-/// The penalty, given as itself or as the compliance that it may add.
-fn penalty(section: &Section, body: &Body, materials: &[Material]) -> Result<Penalty> {
+/// The penalty, given as itself or as the compliance that it may add; none where nothing is said, or "augmented".
+fn penalty(section: &Section, body: &Body, materials: &[Material], phases: &[Phase]) -> Result<Option<Penalty>> {
     const PENALTY: Quantity = Quantity::positive("a positive stiffness in Pa/m");
 
+    let augmented = section.optional_choice("method", &[("penalty", false), ("augmented", true)], &[])?;
+    // Multipliers began with a penalty and ended at a tolerance, which decide nothing any more.
+    let leftover = section.optional_number("augmentation_tolerance", TOLERANCE)?;
+    if augmented != Some(true) && leftover.is_some() {
+        return Err(section.error("augmentation_tolerance", "is for method = \"augmented\""));
+    }
     let penalty = section.optional_number("penalty", PENALTY)?;
     let tolerance = section.optional_number("tolerance", TOLERANCE)?;
     match (penalty, tolerance) {
         (Some(_), Some(_)) => Err(section.error("tolerance", "give penalty or tolerance, not both")),
-        (Some(penalty), None) => Ok(Penalty::Stiffness(penalty)),
+        _ if augmented == Some(true) => Ok(None),
+        (Some(penalty), None) => Ok(Some(Penalty::Stiffness(penalty))),
         (None, Some(tolerance)) => {
             let Body::Layer(layer) = body else {
-                return Ok(Penalty::Tolerance(tolerance));
+                return Ok(Some(Penalty::Tolerance(tolerance)));
             };
-            match penalty_for(tolerance, layer, materials) {
-                penalty if penalty.is_finite() && penalty > 0.0 => Ok(Penalty::Stiffness(penalty)),
+            match penalty_for(tolerance, layer, materials, shortest_step(phases)) {
+                penalty if penalty.is_finite() && penalty > 0.0 => Ok(Some(Penalty::Stiffness(penalty))),
                 penalty => {
                     Err(section.error("tolerance", format!("gives a penalty of {penalty:?} Pa/m; give another")))
                 }
             }
         }
-        (None, None) => Err(section.missing("penalty", "it in Pa/m, or tolerance")),
+        (None, None) if augmented == Some(false) => Err(section.missing("penalty", "it in Pa/m, or tolerance")),
+        (None, None) => Ok(None),
     }
 }
 
@@ -176,13 +165,20 @@ fn friction(section: &Section) -> Result<Friction> {
     if !section.has("law") {
         section.only(&["law", "coefficient", "regularisation", "elastic_slip"])?;
     }
-    let by_slip = section.choice("law", &[("coulomb_tanh", false), ("coulomb_elastic_slip", true)], &[])?;
-    section.only(&["law", "coefficient", if by_slip { "elastic_slip" } else { "regularisation" }])?;
+    let laws = [
+        ("coulomb", None),
+        ("coulomb_tanh", Some(("regularisation", REGULARISATION))),
+        ("coulomb_elastic_slip", Some(("elastic_slip", ELASTIC_SLIP))),
+    ];
+    let sharpness = section.choice("law", &laws, &[])?;
+    section.only(&["law", "coefficient"].into_iter().chain(sharpness.map(|(key, _)| key)).collect::<Vec<_>>())?;
     let coefficient = section.number("coefficient", COEFFICIENT)?;
-    Ok(if by_slip {
-        Friction::CoulombElasticSlip { coefficient, elastic_slip: section.number("elastic_slip", ELASTIC_SLIP)? }
-    } else {
-        Friction::CoulombTanh { coefficient, regularisation: section.number("regularisation", REGULARISATION)? }
+    Ok(match sharpness {
+        None => Friction::Coulomb { coefficient },
+        Some((key @ "elastic_slip", what)) => {
+            Friction::CoulombElasticSlip { coefficient, elastic_slip: section.number(key, what)? }
+        }
+        Some((key, what)) => Friction::CoulombTanh { coefficient, regularisation: section.number(key, what)? },
     })
 }
 

@@ -38,18 +38,7 @@ pub struct Driver<'a> {
     error: f64,
     /// Newton iterations of the step so far.
     newton: usize,
-    /// Only where steps may have to be solved again.
-    rounds: Option<Rounds>,
     counts: Counts,
-}
-
-/// The rounds of a step that is solved until the problem augments it no more.
-struct Rounds {
-    /// The accepted solution, from which each round begins.
-    start: Vector,
-    /// What the last round came to, and how long the step was, s; none before the first.
-    last: Vector,
-    dt: Option<f64>,
 }
 
 /// Where a run stands between two steps.
@@ -104,8 +93,6 @@ pub struct Counts {
     pub rejected: usize,
     /// Newton iterations, those of rejected attempts included.
     pub newton: usize,
-    /// How often a step was solved again with other multipliers.
-    pub augmentations: usize,
     /// What the problem did for it.
     pub work: Work,
     /// Residuals and tangents.
@@ -130,7 +117,6 @@ impl<'a> Driver<'a> {
             dt: None,
             cuts: 0,
             newton: 0,
-            rounds: None,
             controller,
             error: 0.0,
             counts,
@@ -153,11 +139,6 @@ impl<'a> Driver<'a> {
         let Some(start) = Position::start_of(self.phases, self.phase) else { return Ok(()) };
         let first = self.attempt(self.dt.unwrap_or(start.dt));
         self.problem.begin(phase.clone());
-        if self.problem.is_augmented() {
-            let (mut start, last) = (u.like()?, u.like()?);
-            start.copy_from(u)?;
-            self.rounds = Some(Rounds { start, last, dt: None });
-        }
         let begun = Instant::now();
         let outcome = integrator.solve(self, tangent, u, first);
         self.counts.total = begun.elapsed();
@@ -225,21 +206,6 @@ impl<'a> Driver<'a> {
     }
 }
 
-impl Rounds {
-    /// Another round of a step that has come to `u`.
-    fn again(&mut self, step: Step, u: &mut Vector) -> Result<()> {
-        self.dt = Some(step.dt);
-        self.last.copy_from(u)?;
-        u.copy_from(&self.start)
-    }
-
-    /// The step is accepted at `u`.
-    fn over(&mut self, u: &Vector) -> Result<()> {
-        self.dt = None;
-        self.start.copy_from(u)
-    }
-}
-
 impl Implicit for Driver<'_> {
     fn residual(&mut self, step: Step, u: &Vector, rate: &Vector, f: &mut Vector) -> Result<()> {
         let begun = Instant::now();
@@ -264,14 +230,18 @@ impl Implicit for Driver<'_> {
     }
 
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
-        match &self.rounds {
-            Some(rounds) if rounds.dt == Some(step.dt) => u.copy_from(&rounds.last),
-            _ => self.problem.guess(step, u),
-        }
+        self.problem.guess(step, u)
     }
 
     fn limit(&mut self, step: Step, u: &Vector, decrement: &mut Vector) -> Result<bool> {
         self.problem.limit(step, u, decrement)
+    }
+
+    fn search(&mut self, step: Step, u: &mut Vector, decrement: &Vector, f: &mut Vector) -> Result<()> {
+        let begun = Instant::now();
+        let outcome = self.problem.search(step, u, decrement, f);
+        self.counts.assembly += begun.elapsed();
+        outcome
     }
 
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
@@ -300,14 +270,6 @@ impl Implicit for Driver<'_> {
         self.cuts += accepted.cuts;
         self.counts.rejected += accepted.cuts;
         self.newton += accepted.newton;
-        if let Some(rounds) = &mut self.rounds {
-            if self.problem.augment(accepted.step, u)? {
-                rounds.again(accepted.step, u)?;
-                self.counts.augmentations += 1;
-                return Ok(Next::Step(self.attempt(accepted.step.dt)));
-            }
-            rounds.over(u)?;
-        }
         self.problem.commit(accepted.step, u)?;
         let newton = std::mem::take(&mut self.newton);
         let phase = self.phase;

@@ -1,38 +1,42 @@
 //! Solving the transient problem: what a strategy must offer, and the driver that steps it.
 
+mod accepted;
 mod adapt;
 mod body;
 mod condensed;
 mod driver;
 mod face;
 mod monolithic;
-mod start;
+mod on_face;
+mod response;
+pub mod traction;
 mod woodbury;
 
 use crate::energy::Energy;
 use crate::error::{Error, Result};
-use crate::interface::{Fields, Interface, Surface, Totals};
+use crate::interface::{Fields, Interface, Totals};
 use crate::loading::{Phase, Placement};
 use crate::petsc::{Matrix, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 
 pub use body::{Body, Moduli, Region, Solid};
-pub use condensed::{
-    Backing, Compliance, Condensed, Following, Inside, Interior, LARGE_FACE, Layered, PeriodicColumn, Relaxation,
-    Relaxations, Remembering, Sparse,
-};
+pub use condensed::{Condensed, LARGE_FACE, LARGE_PERIODIC_FACE};
 pub use driver::{Counts, Driver, MAX_NEWTON, Position};
 pub use monolithic::Monolithic;
+pub use response::{
+    Compliance, Following, Inside, Interior, Layered, PeriodicColumn, Relaxation, Relaxations, Remembering, Response,
+    Sparse,
+};
 
 /// A discretised contact problem in a form that TS and SNES can step.
 ///
-/// Residual and tangent are pure functions of the accepted state and their arguments (and, within a step that is
-/// augmented, of the solutions of its rounds before); [`Self::commit`] is the only method that moves the accepted state.
+/// Residual and tangent are pure functions of the accepted state and their arguments; [`Self::commit`] is the only method
+/// that moves the accepted state.
 /// All ranks call each method together.
 pub trait TransientProblem {
     /// What the following steps are driven by.
     fn begin(&mut self, phase: Phase);
-    /// f = F(t, u, rate), N/m.
+    /// f = F(t, u, rate).
     fn residual(&mut self, step: Step, u: &Vector, rate: &Vector, f: &mut Vector) -> Result<()>;
     /// tangent = dF/du + (1/dt) dF/d(rate).
     fn tangent(&mut self, step: Step, u: &Vector, rate: &Vector, tangent: &mut Matrix) -> Result<()>;
@@ -45,19 +49,20 @@ pub trait TransientProblem {
     /// Improves on `u`, the accepted state, as the point from which Newton's method begins.
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()>;
     /// Bends a Newton step from `u` to `u` - `decrement`; whether it did.
-    fn limit(&mut self, step: Step, u: &Vector, decrement: &mut Vector) -> Result<bool>;
+    fn limit(&mut self, _step: Step, _u: &Vector, _decrement: &mut Vector) -> Result<bool> {
+        Ok(false)
+    }
+    /// Takes `u` as far along `u` - `decrement` as it likes, and `f` to F there; only with a search of its own.
+    fn search(&mut self, _step: Step, _u: &mut Vector, _decrement: &Vector, _f: &mut Vector) -> Result<()> {
+        Err(Error::Internal("this problem has no line search of its own".into()))
+    }
     /// Judges a Newton iterate by the norm of its residual.
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict;
     /// How far `u`, at the end of a step from the accepted state, is from where the accepted rates would have taken the
     /// face, m.
     fn departure(&mut self, step: Step, u: &Vector) -> Result<f64>;
-    /// Whether [`Self::augment`] ever asks for more.
-    fn is_augmented(&self) -> bool;
-    /// Whether a step that was solved by `u` must be solved again before it is accepted, because the problem is not the
-    /// same any more: its multipliers have moved.
-    fn augment(&mut self, step: Step, u: &Vector) -> Result<bool>;
-    /// Takes the accepted state to the end of an accepted step.
-    fn commit(&mut self, step: Step, u: &Vector) -> Result<()>;
+    /// Takes the accepted state to the end of an accepted step; `u` may be brought to where the laws hold to the last digit.
+    fn commit(&mut self, step: Step, u: &mut Vector) -> Result<()>;
     /// Keeps account of the energy from here on, at rest; `layout` is that of the solution.
     fn keep_account(&mut self, layout: &Vector) -> Result<()>;
     /// The energy balance at the accepted state, where it is kept account of.
@@ -90,25 +95,29 @@ pub struct Work {
     pub solves: usize,
 }
 
-/// The contact face at an accepted state.
+/// The contact face at an accepted state, whole on every rank.
 pub struct Contact<'a> {
-    /// The laws on the face.
-    pub interface: &'a mut Interface,
-    /// Where the indenter is.
-    pub placement: Placement,
-    /// The face.
-    pub surface: &'a Surface,
+    interface: &'a mut Interface,
+    /// Of each node, x, z, m.
+    pub displacement: &'a [f64],
+    /// The length of the last step, s.
+    dt: f64,
 }
 
 impl Contact<'_> {
+    /// Where the indenter is.
+    pub fn placement(&self) -> Placement {
+        self.interface.placement()
+    }
+
     /// The integrals over the face.
     pub fn totals(&mut self) -> Result<Totals> {
-        self.interface.totals(self.placement, self.surface)
+        self.interface.totals()
     }
 
     /// The fields at the face's nodes.
-    pub fn fields(&mut self) -> Result<Fields> {
-        self.interface.fields(self.placement, self.surface)
+    pub fn fields(&self) -> Fields {
+        self.interface.fields(self.dt)
     }
 }
 

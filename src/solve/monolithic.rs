@@ -1,12 +1,13 @@
 //! All unknowns at once: the reference strategy, which works for everything.
 
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector2};
 
 use super::body::Body;
 use super::condensed::LARGE_FACE;
 use super::face::ContactFace;
+use super::traction::{self, Behind, Laws, Outcome};
 use super::woodbury::Woodbury;
-use super::{BulkFields, Contact, TransientProblem, Work, start};
+use super::{BulkFields, Contact, TransientProblem, Work};
 use crate::bulk::Bulk;
 use crate::energy::Energy;
 use crate::error::Result;
@@ -90,6 +91,23 @@ impl Monolithic {
         self.starts = true;
     }
 
+    /// Whether the laws are too stiff for Newton's method on displacements from where the face was: the penalty beside the body,
+    /// or the way of the indenter in a step beside the slip over which friction turns.
+    fn is_stiff(&mut self, step: Step) -> Result<bool> {
+        const PENALTY: f64 = 1e2;
+        const TURNS: f64 = 5.0;
+        let placement = self.face.placement(step)?;
+        let way = placement.sliding_rate.abs().max(placement.approach_rate.abs()) * step.dt;
+        if self.face.interface().friction().is_some_and(|law| way > TURNS * law.sharpness(step.dt)) {
+            return Ok(true);
+        }
+        self.round_off.prepare(&mut self.bulk, step.dt)?;
+        let stiffness = self.face.gather(&self.round_off.stiffness)?;
+        // At a node with its neighbours held, which is stiffer than the body.
+        let softness = 1.0 / stiffness.into_iter().fold(f64::INFINITY, f64::min);
+        Ok(self.face.interface().stiffest() * softness > PENALTY)
+    }
+
     /// Makes `u`, the accepted state, a start at which the tractions meet the laws.
     fn start(&mut self, step: Step, u: &mut Vector) -> Result<()> {
         let (mut load, mut change, mut accepted) = (u.like()?, u.like()?, u.like()?);
@@ -99,12 +117,9 @@ impl Monolithic {
         self.inverse.solve_bulk(&load, &mut change)?;
         u.add(-1.0, &change)?;
         let free = self.face.gather(u)?;
-        let stations = self.face.stations(step)?;
-        let friction = self.face.interface().friction().copied();
-        let Some(behind) = self.inverse.compliance(&self.bulk, step.dt)? else { return Ok(()) };
-        let start = start::start(stations, friction, behind, free)?;
+        let Some((forces, displacements)) = self.settle(step, free)? else { return Ok(()) };
         load.set(0.0)?;
-        self.on_face(&start.forces, &mut load)?;
+        self.on_face(&forces, &mut load)?;
         self.inverse.solve_bulk(&load, &mut change)?;
         u.add(1.0, &change)?;
         // What round-off in the factor left.
@@ -116,7 +131,43 @@ impl Monolithic {
         self.inverse.solve_bulk(&load, &mut change)?;
         u.add(1.0, &change)?;
         self.started = true;
-        self.on_face(&start.displacements, u)
+        self.on_face(&displacements, u)
+    }
+
+    /// The forces on the nodes of the face and their displacements where the laws hold, on every rank. Collective.
+    fn settle(&mut self, step: Step, free: Vec<f64>) -> Result<Option<(Vec<f64>, Vec<f64>)>> {
+        let placement = self.face.placement(step)?;
+        self.face.accepted.interface.place(placement)?;
+        let interface = self.face.interface();
+        let Some((compliance, secant)) = self.inverse.compliance(&self.bulk, step.dt)? else { return Ok(None) };
+        let behind = Behind { interface, compliance, secant };
+        let sites = behind.sites(&self.face.accepted, placement, &free);
+        let resolution = placement.resolution * step.dt;
+        let laws = Laws { penalty: interface.penalty(), friction: interface.friction(), dt: step.dt, resolution };
+        let normals = interface.points().all().iter().map(|point| point.normal);
+        let tractions: Vec<Vector2<f64>> =
+            interface.states().iter().zip(normals).map(|(state, normal)| state.on_layer(&normal)).collect();
+        let at_rest = behind.at_points(&free);
+        let moved = |t: &[Vector2<f64>]| -> Result<Vec<Vector2<f64>>> {
+            Ok(behind.moves(t)?.iter().zip(&at_rest).map(|(moved, free)| moved + free).collect())
+        };
+        let first = Outcome::new(&sites, tractions.clone(), moved(&tractions)?, laws);
+        let operator: traction::Operator<'_, 2> = (&|i, j| behind.influence(i, j), &|t| behind.moves(t));
+        // To the last digits: what displacements make of the tractions is more than they are off.
+        let outcome = traction::start(&sites, first, laws, operator, f64::EPSILON)?;
+        let met = outcome.met(&sites);
+        let forces = behind.forces(&met);
+        let mut displacements = behind.displacements(&forces)?;
+        displacements.iter_mut().zip(&free).for_each(|(u, free)| *u += free);
+        if let Some(penalty) = interface.penalty() {
+            for (i, (site, answer)) in sites.iter().zip(&outcome.answers).enumerate().filter(|(_, (_, a))| a.active) {
+                if let [(node, _)] = interface.points().shares(i) {
+                    let motion = answer.motion(site, penalty);
+                    displacements[2 * node..][..2].copy_from_slice(motion.as_slice());
+                }
+            }
+        }
+        Ok(Some((forces, displacements)))
     }
 
     /// Sets x, z of the face's nodes in a vector of the body.
@@ -156,19 +207,18 @@ impl RoundOff {
 
 impl TransientProblem for Monolithic {
     fn begin(&mut self, phase: Phase) {
-        self.face.begin(phase);
+        self.face.accepted.begin(phase);
     }
 
     fn residual(&mut self, step: Step, u: &Vector, rate: &Vector, f: &mut Vector) -> Result<()> {
-        self.face.try_residual(step, u, rate)?;
-        self.face.set_scale(self.face.contact_norm());
+        self.face.try_residual(step, u)?;
         self.bulk.force(step, u, rate, f)?;
         self.round_off.take(&mut self.bulk, step.dt, u)?;
         self.face.add(self.face.residual.iter().copied().enumerate(), f)
     }
 
-    fn tangent(&mut self, step: Step, u: &Vector, rate: &Vector, tangent: &mut Matrix) -> Result<()> {
-        self.face.try_tangent(step, u, rate)?;
+    fn tangent(&mut self, step: Step, u: &Vector, _rate: &Vector, tangent: &mut Matrix) -> Result<()> {
+        self.face.try_tangent(step, u)?;
         let Self { face, rows, base, .. } = self;
         if base.dt != step.dt {
             self.bulk.tangent(step.dt, tangent)?;
@@ -198,57 +248,42 @@ impl TransientProblem for Monolithic {
 
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
         self.started = false;
-        if self.starts && 2 * self.rows.len() <= LARGE_FACE {
-            self.round_off.prepare(&mut self.bulk, step.dt)?;
-            let stiffness = self.face.gather(&self.round_off.stiffness)?;
-            // At a node with its neighbours held, which is stiffer than the body.
-            let softness = 1.0 / stiffness.into_iter().fold(f64::INFINITY, f64::min);
-            if self.face.is_stiff(step, softness)? {
-                return self.start(step, u);
-            }
+        let small = 2 * self.rows.len() <= LARGE_FACE;
+        if self.starts && small && self.is_stiff(step)? {
+            return self.start(step, u);
         }
-        self.face.predict(step, u)
-    }
-
-    fn limit(&mut self, step: Step, u: &Vector, decrement: &mut Vector) -> Result<bool> {
-        self.face.limit(step, u, decrement)
+        // The face goes on as it did; what is behind it need not be predicted, because it is linear.
+        if self.face.accepted.goes_on_from(step)?.is_some() {
+            let rates = self.face.accepted.rate().as_chunks().0.iter();
+            let increments = rates.map(|&[x, z]| Vector2::new(x, z) * step.dt).enumerate();
+            self.face.add(increments, u)?;
+        }
+        Ok(())
     }
 
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
-        let round_off = self.round_off.force;
-        let noise = |face: &ContactFace| round_off + face.noise();
-        // There is nothing to be gained from the linear system there.
-        if self.started && iteration == 0 && norm <= noise(&self.face) {
-            return Verdict::Converged;
-        }
-        self.face.test(iteration, norm, self.tolerance, noise)
+        // From a start that met the laws there is nothing to be gained from the linear system within the noise.
+        let judged = self.face.test(iteration, norm, self.tolerance, self.round_off.force, self.started);
+        judged.unwrap_or(Verdict::Diverged)
     }
 
     fn departure(&mut self, step: Step, u: &Vector) -> Result<f64> {
-        self.face.departure(step, u)
+        let ends = self.face.gather(u)?;
+        Ok(self.face.accepted.departure(step, &ends))
     }
 
-    fn is_augmented(&self) -> bool {
-        self.face.interface().is_augmented()
-    }
-
-    fn augment(&mut self, step: Step, u: &Vector) -> Result<bool> {
-        self.face.augment(step, u)
-    }
-
-    fn commit(&mut self, step: Step, u: &Vector) -> Result<()> {
+    fn commit(&mut self, step: Step, u: &mut Vector) -> Result<()> {
         self.bulk.commit(step, u)?;
         self.face.commit(step, u)
     }
 
     fn keep_account(&mut self, _layout: &Vector) -> Result<()> {
         self.bulk.keep_account();
-        self.face.keep_account();
-        Ok(())
+        self.face.accepted.keep_account()
     }
 
     fn energy(&self) -> Option<Energy> {
-        self.face.energy().zip(self.bulk.energy()).map(|(face, body)| Energy::new(face, body))
+        self.face.accepted.energy().zip(self.bulk.energy()).map(|(face, body)| Energy::new(face, body))
     }
 
     fn save(&mut self, u: &Vector, snapshot: &mut Snapshot) -> Result<()> {
@@ -263,11 +298,11 @@ impl TransientProblem for Monolithic {
         let order = self.body.natural_order(u)?;
         order.restore("u", u, snapshot)?;
         self.bulk.restore(&order, snapshot, u)?;
-        self.face.restore(snapshot, u)
+        self.face.restore(snapshot)
     }
 
     fn contact(&mut self) -> Result<Contact<'_>> {
-        Ok(self.face.contact())
+        Ok(self.face.accepted.contact())
     }
 
     fn bulk_fields(&mut self, u: &Vector) -> Result<BulkFields> {

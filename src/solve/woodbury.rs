@@ -16,8 +16,9 @@ use std::ops::Range;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
 
-use super::condensed::{Compliance, Factor, SparseColumns};
 use super::face::ContactFace;
+use super::on_face::{Factor, SparseColumns};
+use super::response::Compliance;
 use crate::bulk::Bulk;
 use crate::error::{Error, Result};
 use crate::petsc::{Cholesky, Matrix, Vector};

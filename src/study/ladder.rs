@@ -98,8 +98,8 @@ fn penalty(subject: &Subject, scene: &Scene, table: &Table) -> Option<Ladder> {
     let rung = |factor: f64| match (scene::get(table, TOLERANCE).and_then(Value::as_float), scene.contact.penalty) {
         _ if overridden => None,
         (Some(tolerance), _) => Some(one(TOLERANCE, format!("{:e}", tolerance / factor))),
-        (None, Penalty::Stiffness(penalty)) => Some(one("contact.penalty", format!("{:e}", penalty * factor))),
-        (None, Penalty::Tolerance(_)) => None,
+        (None, Some(Penalty::Stiffness(penalty))) => Some(one("contact.penalty", format!("{:e}", penalty * factor))),
+        (None, Some(Penalty::Tolerance(_)) | None) => None,
     };
     let rungs = DECADES.into_iter().map(rung).collect::<Option<_>>()?;
     Some(Ladder { name: "penalty".into(), rungs, ratio: Some(10.0) })

@@ -24,7 +24,7 @@ pub fn deep(n: usize, poisson: f64, indenter: Indenter, phases: Vec<Phase>) -> S
         cells: [n, n / 3],
         grading: 20.0,
         indenter,
-        penalty: 1e9,
+        penalty: Some(1e9),
         ..Setting::new(n, elastic(300.0, poisson), phases)
     }
 }

@@ -31,7 +31,7 @@ fn three_arms(rule: PoissonRule) -> Solid {
 fn pressed(solid: Solid, [ramp, hold]: [usize; 2]) -> Setting {
     Setting {
         indenter: Indenter::Wave(1e-15),
-        penalty: 1e11,
+        penalty: Some(1e11),
         ..Setting::new(4, solid, vec![Phase::press(RAMP, ramp, APPROACH), Phase::press(HOLD, hold, APPROACH)])
     }
 }

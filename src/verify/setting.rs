@@ -25,10 +25,8 @@ pub struct Setting {
     pub update: Update,
     /// The indenter.
     pub indenter: Indenter,
-    /// Pa/m
-    pub penalty: f64,
-    /// The penalty that the augmented Lagrangian begins with, Pa/m; none = no multipliers.
-    pub augmented_from: Option<f64>,
+    /// Pa/m; none = no penetration.
+    pub penalty: Option<f64>,
     /// None = frictionless.
     pub friction: Option<Friction>,
     /// Whether the elements are those for Poisson ratios near 1/2.
@@ -81,6 +79,9 @@ pub fn one_arm(poisson: f64, rule: PoissonRule) -> Solid {
     Solid { shear: 568.498, poisson, rule, arms: vec![(0.579, 0.817)] }
 }
 
+/// The penalty that stands for no penetration where there must be one, Pa/m.
+const RIGID: f64 = 1e10;
+
 /// Friction regularised by the slip rate, m/s.
 pub fn tanh(coefficient: f64, regularisation: f64) -> Friction {
     Friction::CoulombTanh { coefficient, regularisation }
@@ -97,8 +98,7 @@ impl Setting {
             solid,
             update: Update::Exponential,
             indenter: Indenter::Wave(5e-4),
-            penalty: 1e8,
-            augmented_from: None,
+            penalty: Some(1e8),
             friction: None,
             mean_dilatation: false,
             phases,
@@ -143,18 +143,17 @@ impl Setting {
             }
         };
         let element = if self.mean_dilatation { "q4_bbar" } else { "q4" };
-        let method = if self.augmented_from.is_some() { "\nmethod = \"augmented\"" } else { "" };
+        let penalty = self.penalty.map_or(String::new(), |penalty| format!("penalty = {penalty:?}\n"));
         let mut text = format!(
             "[layer]\nwidth = {:?}\ndepth = {:?}\ncells = [{nx}, {nz}]\ngrading = {:?}\nsides = \"periodic\"\n\
              element = \"{element}\"\n[material]\nshear_modulus = {:?}\npoisson_ratio = {:?}\narms = [{}]\npoisson_rule = \"{rule}\"\n\
-             memory = \"{memory}\"\n[indenter]\n{indenter}\n[contact]\npenalty = {:?}{method}\n[solver]\ntolerance = 1e-10\n",
+             memory = \"{memory}\"\n[indenter]\n{indenter}\n[contact]\n{penalty}[solver]\ntolerance = 1e-10\n",
             self.width,
             self.depth,
             self.grading,
             solid.shear,
             solid.poisson,
-            arms.join(", "),
-            self.augmented_from.unwrap_or(self.penalty)
+            arms.join(", ")
         );
         // Writing to a string cannot fail.
         match self.friction {
@@ -165,6 +164,9 @@ impl Setting {
             Some(Friction::CoulombElasticSlip { coefficient, elastic_slip }) => {
                 let _ = writeln!(text, "[friction]\nlaw = \"coulomb_elastic_slip\"\ncoefficient = {coefficient:?}");
                 let _ = writeln!(text, "elastic_slip = {elastic_slip:?}");
+            }
+            Some(Friction::Coulomb { coefficient }) => {
+                let _ = writeln!(text, "[friction]\nlaw = \"coulomb\"\ncoefficient = {coefficient:?}");
             }
             None => {}
         }
@@ -191,6 +193,11 @@ impl Setting {
         Harmonic { amplitude, wavelength: self.width }
     }
 
+    /// What the penalty adds to the compliance, m/Pa.
+    pub fn softness(&self) -> f64 {
+        self.penalty.map_or(0.0, |penalty| 1.0 / penalty)
+    }
+
     /// The oracle's steady sliding with the same penalty.
     pub fn steady(&self, velocity: f64) -> steady::Sliding {
         steady::Sliding {
@@ -199,7 +206,7 @@ impl Setting {
             width: self.width,
             velocity,
             friction: self.friction.as_ref().map_or(0.0, Friction::coefficient),
-            softness: 1.0 / self.penalty,
+            softness: self.softness(),
         }
     }
 
@@ -207,8 +214,8 @@ impl Setting {
     pub fn transient(&self, nodes: usize) -> Result<Vec<Vec<transient::Forces>>> {
         let (friction, regularisation) = match self.friction {
             Some(Friction::CoulombTanh { coefficient, regularisation }) => (coefficient, regularisation),
-            Some(Friction::CoulombElasticSlip { .. }) => {
-                return Err(Error::Internal("the oracle's friction has no elastic slip".into()));
+            Some(Friction::CoulombElasticSlip { .. } | Friction::Coulomb { .. }) => {
+                return Err(Error::Internal("the oracle's friction is regularised by the slip rate".into()));
             }
             None => (0.0, 1.0),
         };
@@ -217,7 +224,7 @@ impl Setting {
             solid: self.solid.clone(),
             width: self.width,
             nodes,
-            penalty: self.penalty,
+            penalty: self.penalty.unwrap_or(RIGID),
             friction,
             regularisation,
             update: self.update,

@@ -77,7 +77,7 @@ pub fn modulus_unit(before: &Before<'_>) -> Option<Warning> {
 
 /// G(0) above [`MOST_RELAXED`] times what the shortest step meets.
 pub fn digits(before: &Before<'_>) -> Option<Warning> {
-    let step = super::loading::shortest_step(before.scene);
+    let step = crate::scene::shortest_step(&before.scene.phases);
     let ratio = |material: &Material| step / material.shear_series().integral(step);
     let stiff = |(_, material): &(usize, &Material)| above(ratio(material), MOST_RELAXED);
     let (index, stiff) = before.scene.materials.iter().enumerate().find(stiff)?;

@@ -6,7 +6,7 @@ use super::{Before, Warning, above, cells, phase};
 use crate::composition::PressedEnd;
 use crate::oracle::layer::Layer;
 use crate::oracle::solid::Moduli;
-use crate::scene::{Material, Method};
+use crate::scene::Material;
 
 /// Nodes in contact, estimated: with fewer N comes in jumps.
 pub const FEWEST_NODES: f64 = 3.0;
@@ -71,9 +71,9 @@ pub fn pressed_end(before: &Before<'_>) -> Option<Warning> {
 /// shortest step meets.
 pub fn penalty(before: &Before<'_>) -> Option<Warning> {
     let Before { scene, outline, encounters, .. } = before;
-    let penalty = scene.contact.penalty.stiffness().or(outline.penalty)?;
+    let penalty = scene.contact.stiffness().or(outline.penalty)?;
     let deepest = encounters.deepest();
-    if deepest.overlap <= 0.0 || scene.contact.method != Method::Penalty {
+    if deepest.overlap <= 0.0 {
         return None;
     }
     let [width, _] = deepest.contact();
@@ -84,7 +84,7 @@ pub fn penalty(before: &Before<'_>) -> Option<Warning> {
     }
     let text = format!(
         "the penalty of {penalty:.2e} Pa/m adds {share:.3} times the compliance of the body (more than {MOST_PENALTY}): the \
-         indenter sinks in by about {:.0} % of its approach; give {:.0e} or more, or tolerance = 0.01 instead",
+         indenter sinks in by about {:.0} % of its approach; give {:.0e} or more, tolerance = 0.01 instead, or neither",
         100.0 * share / (1.0 + share),
         penalty * share / (0.2 * MOST_PENALTY)
     );
@@ -94,7 +94,7 @@ pub fn penalty(before: &Before<'_>) -> Option<Warning> {
 /// C_zz, m/Pa, of the body to a wave of the wavenumber k, 1/m: of strata each as a bonded layer under what reaches it,
 /// added up; of a mesh, the largest that its height of one of its materials would have.
 fn compliance(before: &Before<'_>, k: f64) -> f64 {
-    let step = super::loading::shortest_step(before.scene);
+    let step = crate::scene::shortest_step(&before.scene.phases);
     let of = |material: &Material, depth: f64| {
         let shear = material.shear_modulus * (material.shear_series().integral(step) / step);
         Layer { depth }.compliance(k, Moduli::elastic(shear, material.poisson_ratio)).zz.re

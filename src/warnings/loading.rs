@@ -16,12 +16,6 @@ pub const ARM_THAT_MATTERS: f64 = 0.02;
 /// fewer, N or Q are off by one per cent and more.
 pub const FEWEST_STEPS_TO_A_MOTION: f64 = 4.0;
 
-/// The shortest step of the history, s; of an adaptive phase, as long as they are expected to be.
-pub fn shortest_step(scene: &Scene) -> f64 {
-    let steps = scene.phases.iter().map(|phase| phase.duration / phase.expected_steps() as f64);
-    steps.fold(f64::INFINITY, f64::min)
-}
-
 /// Its length, s; none where steps are chosen as the phase goes.
 fn step(scene: &Scene, index: usize) -> Option<f64> {
     let phase = scene.phases.get(index)?;

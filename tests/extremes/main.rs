@@ -30,6 +30,7 @@ use sample::{Choice, Draw, Sample};
 const CASES: &[Case] = &[
     Case::new("random_scenes", &[1], random_scenes),
     Case::new("random_gauss_scenes", &[1], random_gauss_scenes),
+    Case::new("random_exact_scenes", &[1], random_exact_scenes),
     Case::new("random_monolithic_scenes", &[1], random_monolithic_scenes),
     Case::new("full_contact_is_that_of_the_closed_form", &[1], exact::full_contact),
     Case::new("units_do_not_matter", &[1], units_do_not_matter),
@@ -46,13 +47,18 @@ fn solve(world: &SimpleCommunicator, text: &str) -> Result<Solution> {
     solution::solve(world, &scene)
 }
 
-/// Issue 6: of a random sample at least 95 % converge, all of those keep the laws, and the others say so with a remedy.
-/// As a scene gets that says nothing else; found: 99.2 % of 500.
+/// Of a random sample at least 98 % converge, all of those keep the laws, and the others say so with a remedy. With a penalty and
+/// nothing else said; found: 99.6 % of 500.
 fn random_scenes(world: &SimpleCommunicator, _: &Path) {
     random(world, &std::env::var("MPJR_EXTREMES_CHOICE").unwrap_or_default(), 120);
 }
 
-/// The same with Gauss points; found: 98.6 % of 500.
+/// The same without penetration and with Coulomb's law itself; found: 99.6 % of 500.
+fn random_exact_scenes(world: &SimpleCommunicator, _: &Path) {
+    random(world, "exact", 120);
+}
+
+/// The same with Gauss points; found: 99.4 % of 500.
 fn random_gauss_scenes(world: &SimpleCommunicator, _: &Path) {
     random(world, "gauss", 120);
 }
@@ -94,7 +100,7 @@ fn random(world: &SimpleCommunicator, choice: &str, count: usize) {
     if let Some(file) = variable("MPJR_EXTREMES_OUT") {
         std::fs::write(file, table).unwrap();
     }
-    assert!(f64::from(converged) >= 0.95 * count as f64, "only {converged} of {count} converge");
+    assert!(f64::from(converged) >= 0.98 * count as f64, "only {converged} of {count} converge");
 }
 
 /// All numbers finite, 0 <= p, |q| <= f p, no traction in the gap; |Q| <= f N; N the sum of the nodal pressures; energy is
@@ -109,12 +115,9 @@ fn keeps_the_laws(sample: &Sample, solution: &Solution) -> std::result::Result<(
         }
     }
     for (phase, end) in solution.ends.iter().enumerate() {
-        // Multipliers leave separations up to their tolerance, 1e-5 of the displacement of the face.
-        let moved = end.displacement_z.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
-        let open = if sample.choice.method == "augmented" { 1e-5 * moved } else { 0.0 };
         for (node, ((p, q), gap)) in end.pressure.iter().zip(&end.shear).zip(&end.gap).enumerate() {
             let known = p.is_finite() && q.is_finite() && gap.is_finite();
-            if !known || *p < 0.0 || q.abs() > f * p || (*gap > open && *p != 0.0) {
+            if !known || *p < 0.0 || q.abs() > f * p || (*gap > 0.0 && *p != 0.0) {
                 return Err(format!("node {node}: p = {p:e}, q = {q:e}, gap = {gap:e}"));
             }
         }
@@ -123,25 +126,21 @@ fn keeps_the_laws(sample: &Sample, solution: &Solution) -> std::result::Result<(
             return Err(format!("phase {phase}: N = {normal:e}, the nodal pressures come to {sum:e}"));
         }
     }
-    makes_no_energy(sample, solution)
+    makes_no_energy(solution)
 }
 
 /// What the dashpots dissipate in a step is a square, for the rate that either memory takes, and is not negative but for
-/// the digits that a stiff penalty leaves of the contact forces: 1e-6 of the largest energy so far. Friction takes
-/// the traction as the mean of both ends of a step, so that at a turn half of the old one, at most f N/2, works the wrong way
-/// along the slip; and that is at most the way of the indenter and that of the face.
-fn makes_no_energy(sample: &Sample, solution: &Solution) -> std::result::Result<(), String> {
-    let sideways = solution.ends.iter().flat_map(|end| &end.displacement_x).fold(0.0, |most: f64, u| most.max(u.abs()));
+/// the digits that a stiff penalty leaves of the contact forces: 1e-6 of the largest energy so far. What friction takes never
+/// falls at all.
+fn makes_no_energy(solution: &Solution) -> std::result::Result<(), String> {
     let mut largest = 0.0_f64;
     for pair in solution.history.windows(2) {
         let [before, after] = [&pair[0].energy, &pair[1].energy];
         largest = largest.max(after.external_work.abs()).max(after.stored).max(after.penalty);
         let arms = after.viscoelastic_dissipation - before.viscoelastic_dissipation;
         let friction = after.friction_dissipation - before.friction_dissipation;
-        let slip = (pair[1].sliding - pair[0].sliding).abs() + 2.0 * sideways;
-        let turn = 0.5 * sample.friction * pair[0].normal_force * slip;
-        if arms < -1e-6 * largest || friction < -turn * (1.0 + 1e-6) {
-            return Err(format!("arms {arms:e} J/m, friction {friction:e} J/m (-{turn:e}), of {largest:e}: {pair:?}"));
+        if arms < -1e-6 * largest || friction < 0.0 {
+            return Err(format!("arms {arms:e} J/m, friction {friction:e} J/m, of {largest:e}: {pair:?}"));
         }
     }
     Ok(())
@@ -177,6 +176,14 @@ fn units_do_not_matter(world: &SimpleCommunicator, _: &Path) {
         solution.history.iter().flat_map(of).collect::<Vec<f64>>()
     };
     let plain = forces(1.0, 1.0, 1.0);
+    // Powers of two change no digit at all: of lengths even ones, of which roots are powers of two, too.
+    for (length, modulus, time) in
+        [(0.0f64, -30, 0), (0.0, 61, 0), (0.0, 0, -24), (0.0, 0, 17), (-20.0, 0, 0), (16.0, -44, 9)]
+    {
+        let scaled = forces(length.exp2(), f64::from(modulus).exp2(), f64::from(time).exp2());
+        let same = scaled.iter().zip(&plain).all(|(a, b)| a.to_bits() == b.to_bits());
+        assert!(same, "2^{length} m, 2^{modulus} Pa, 2^{time} s");
+    }
     let largest = plain.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
     for (length, modulus, time) in [(1e-9, 1e9, 1.0), (1e3, 1e-3, 1.0), (1e-6, 1e6, 1e-6), (1.0, 1.0, 3e7)] {
         let scaled = forces(length, modulus, time);

@@ -58,6 +58,7 @@ impl Choice {
                 "coulomb_elastic_slip" => choice.law = "coulomb_elastic_slip",
                 "penalty" => choice.method = "penalty",
                 "augmented" => choice.method = "augmented",
+                "exact" => (choice.law, choice.method) = ("coulomb", "exact"),
                 other => panic!("{other}: no such choice"),
             }
         }
@@ -152,8 +153,8 @@ impl Sample {
     /// The scene, in units where the wavelength is `length` m, E is `modulus` Pa and relaxation times are of `time` s.
     pub fn scene(&self, length: f64, modulus: f64, time: f64) -> String {
         let Sample { poisson, depth, cells, rule, memory, sides, .. } = self;
-        // Multipliers have no end on a clamped end of the face, and are refused there.
-        let sides = if *sides == "fixed" && self.choice.method == "augmented" { "roller" } else { sides };
+        // A clamped end of the face cannot give way, and is refused under an indenter that does not penetrate.
+        let sides = if *sides == "fixed" && self.choice.method != "penalty" { "roller" } else { sides };
         let height = self.depth / cells[1] as f64;
         let (amplitude, speed) = (self.amplitude * length, self.velocity * length / time);
         let profile = match self.profile {
@@ -185,9 +186,11 @@ impl Sample {
             let _ = write!(text, "poisson_rule = \"{rule}\"\nmemory = \"{memory}\"\n");
         }
         let penalty = self.penalty * modulus / (height * length);
-        let _ = write!(text, "[indenter]\n{profile}\n[contact]\npenalty = {penalty:e}\n");
         let Choice { strategy, quadrature, law, method } = self.choice;
-        let _ = write!(text, "quadrature = \"{quadrature}\"\nmethod = \"{method}\"\n");
+        let _ = write!(text, "[indenter]\n{profile}\n[contact]\nquadrature = \"{quadrature}\"\n");
+        if method != "exact" {
+            let _ = write!(text, "penalty = {penalty:e}\nmethod = \"{method}\"\n");
+        }
         let _ = write!(text, "[solver]\nstrategy = \"{strategy}\"\n");
         if self.friction > 0.0 {
             // An elastic slip over which the traction turns within a step as with the other law.
@@ -196,8 +199,10 @@ impl Sample {
                 _ => ("regularisation", 1.0),
             };
             let sharpness = self.regularisation * speed * length;
-            let _ =
-                write!(text, "[friction]\nlaw = \"{law}\"\ncoefficient = {}\n{key} = {sharpness:e}\n", self.friction);
+            let _ = write!(text, "[friction]\nlaw = \"{law}\"\ncoefficient = {}\n", self.friction);
+            if law != "coulomb" {
+                let _ = writeln!(text, "{key} = {sharpness:e}");
+            }
         }
         let duration = 4.0 * self.step * time;
         let phase = |rest: String| format!("[[phase]]\nduration = {duration:e}\nsteps = 4\n{rest}\n");

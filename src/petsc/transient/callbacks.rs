@@ -138,6 +138,23 @@ pub(super) unsafe extern "C" fn limit<P: Implicit>(
     }
 }
 
+pub(super) unsafe extern "C" fn search<P: Implicit>(
+    search: ffi::SNESLineSearch,
+    pointer: *mut c_void,
+) -> ffi::PetscErrorCode {
+    // SAFETY: as for `residual`; the vectors are the line search's own.
+    unsafe {
+        guarded::<P>(pointer, |context| {
+            let (mut u, mut f, mut decrement) = (null_mut(), null_mut(), null_mut());
+            check(ffi::SNESLineSearchGetVecs(search, &mut u, &mut f, &mut decrement, null_mut(), null_mut()))?;
+            let step = context.step;
+            let (mut u, mut f) = (Vector::borrow(u), Vector::borrow(f));
+            context.problem.search(step, &mut u, &Vector::borrow(decrement), &mut f)?;
+            check(ffi::SNESLineSearchComputeNorms(search))
+        })
+    }
+}
+
 pub(super) unsafe extern "C" fn convergence<P: Implicit>(
     snes: ffi::SNES,
     iteration: ffi::PetscInt,

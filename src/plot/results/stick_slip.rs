@@ -50,7 +50,7 @@ impl State<'_> {
             _ if pressure <= 0.0 => return 0.0,
             Some(Friction::CoulombTanh { regularisation, .. }) => rate.abs() < *regularisation,
             // Up to round-off.
-            Some(Friction::CoulombElasticSlip { coefficient, .. }) => {
+            Some(Friction::CoulombElasticSlip { coefficient, .. } | Friction::Coulomb { coefficient }) => {
                 shear.abs() < (1.0 - 1e-12) * coefficient * pressure
             }
             None => false,

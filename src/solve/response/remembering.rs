@@ -1,10 +1,10 @@
 //! A body whose interior has a memory of its own: parts that relax differently, such as a constant bulk modulus.
 //!
-//! At a step length dt the bulk is A u = b - P R with A = sum_p c_p K_p, b = -sum_p K_p h_p from the accepted state
+//! At a step length dt the bulk is A u = b + P f with A = sum_p c_p K_p, b = -sum_p K_p h_p from the accepted state
 //! (h_p = y_p at u = 0), P from the face into the body, and so on the face
 //!
 //! ```text
-//! y = u - u0,   u0 = (A^-1 b)_G,     c = 1,     C = (A^-1)_GG
+//! u_free = (A^-1 b)_G,     c = 1,     C = (A^-1)_GG
 //! ```
 //!
 //! One factorisation per step length. The whole body is on rank 0: at the sizes where a direct solve is the method,
@@ -13,22 +13,20 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
 
-use super::super::face::ContactFace;
 use super::super::{BulkFields, Work};
-use super::Backing;
+use super::Response;
 use super::compliance::Compliance;
 use crate::energy::BodyEnergy;
 use crate::error::Result;
-use crate::interface::Residual;
 use crate::parallel::agree;
-use crate::petsc::{Step, Vector};
+use crate::petsc::{Gather, Step, Vector};
 use crate::snapshot::{NaturalOrder, Snapshot};
 
 /// The body with its memory, whole on one rank.
 pub trait Inside {
-    /// Makes u0 and C hold for a step of this length from the accepted state.
+    /// Makes u_free and C hold for a step of this length from the accepted state.
     fn prepare(&mut self, step: Step) -> Result<()>;
-    /// u0 of x, z of each face node, m.
+    /// u_free of x, z of each face node, m.
     fn face(&self) -> &[f64];
     /// C; none before the first step was prepared.
     fn compliance(&self) -> Option<&Compliance>;
@@ -38,8 +36,8 @@ pub trait Inside {
     fn keep_account(&mut self);
     /// The energy at the accepted state, where it is kept account of.
     fn energy(&self) -> Option<BodyEnergy>;
-    /// Takes the body to the end of the step that was prepared, under the contact forces -`residual`.
-    fn commit(&mut self, step: Step, residual: &Residual) -> Result<()>;
+    /// Takes the body to the end of the step that was prepared, under the contact forces `forces`, x, z of each face node, N/m.
+    fn commit(&mut self, step: Step, forces: &[f64]) -> Result<()>;
     /// Adds the accepted state to a snapshot.
     fn save(&self, snapshot: &mut Snapshot) -> Result<()>;
     /// Takes the accepted state from a snapshot.
@@ -85,8 +83,6 @@ pub struct Remembering {
     comm: SimpleCommunicator,
     /// On rank 0.
     inside: Option<Box<dyn Inside>>,
-    /// For the step that was prepared, on all ranks.
-    softness: f64,
     /// Length of the step that was prepared, s.
     prepared: Option<f64>,
     /// On all ranks; only where it is asked for.
@@ -96,31 +92,25 @@ pub struct Remembering {
 impl Remembering {
     /// At rest; `inside` is on rank 0 of `comm`.
     pub fn new(comm: &SimpleCommunicator, inside: Option<Box<dyn Inside>>) -> Self {
-        Self { comm: comm.duplicate(), inside, softness: 0.0, prepared: None, energy: None }
+        Self { comm: comm.duplicate(), inside, prepared: None, energy: None }
     }
 }
 
-impl Backing for Remembering {
+impl Response for Remembering {
     fn prepare(&mut self, step: Step) -> Result<()> {
         if self.prepared == Some(step.dt) {
             return Ok(());
         }
         let mine = self.inside.as_mut().map_or(Ok(()), |inside| inside.prepare(step));
         agree(&self.comm, mine)?;
-        self.softness = self.compliance().map_or(0.0, Compliance::largest);
-        self.comm.process_at_rank(0).broadcast_into(&mut self.softness);
         self.prepared = Some(step.dt);
         Ok(())
     }
 
-    fn free(&mut self, _step: Step, u: &Vector, _rate: &Vector, y: &mut Vector) -> Result<()> {
-        y.copy_from(u)?;
-        // On all ranks: PETSc keeps norms until it sees a vector written to, on each rank for itself.
-        let mut y = y.view_mut()?;
+    fn free(&mut self, _step: Step, free: &mut Vector) -> Result<()> {
+        let mut values = free.view_mut()?;
         if let Some(inside) = &self.inside {
-            for (y, free) in y.iter_mut().zip(inside.face()) {
-                *y -= free;
-            }
+            values.copy_from_slice(inside.face());
         }
         Ok(())
     }
@@ -131,14 +121,6 @@ impl Backing for Remembering {
 
     fn compliance(&self) -> Option<&Compliance> {
         self.inside.as_ref().and_then(|inside| inside.compliance())
-    }
-
-    fn softness(&self) -> f64 {
-        self.softness
-    }
-
-    fn takes_forces(&self) -> bool {
-        true
     }
 
     fn work(&self) -> Work {
@@ -157,8 +139,8 @@ impl Backing for Remembering {
         self.energy
     }
 
-    fn commit(&mut self, step: Step, _u: &Vector, residual: &Residual) -> Result<()> {
-        let mine = self.inside.as_mut().map_or(Ok(()), |inside| inside.commit(step, residual));
+    fn commit(&mut self, step: Step, _u: &Vector, forces: &[f64]) -> Result<()> {
+        let mine = self.inside.as_mut().map_or(Ok(()), |inside| inside.commit(step, forces));
         self.prepared = None;
         agree(&self.comm, mine)?;
         self.share_energy();
@@ -178,7 +160,7 @@ impl Backing for Remembering {
         Ok(())
     }
 
-    fn bulk_fields(&mut self, _face: &mut ContactFace, _u: &Vector) -> Result<BulkFields> {
+    fn bulk_fields(&mut self, _gather: &mut Gather, _u: &Vector) -> Result<BulkFields> {
         let mine = self.inside.as_mut().map_or(Ok(BulkFields::default()), |inside| inside.fields());
         agree(&self.comm, mine)
     }

@@ -2,6 +2,8 @@
 //!
 //! u = C f for forces f on the face alone: C is the inverse of the Schur complement of the stiffness onto the face.
 
+use std::cell::OnceCell;
+
 use nalgebra::Matrix2;
 
 use super::super::body::Body;
@@ -13,6 +15,8 @@ use crate::petsc::Cholesky;
 pub struct Compliance {
     order: usize,
     form: Form,
+    /// See [`Self::smallest`].
+    smallest: OnceCell<f64>,
 }
 
 enum Form {
@@ -29,6 +33,10 @@ enum Form {
 }
 
 impl Compliance {
+    fn new(order: usize, form: Form) -> Self {
+        Self { order, form, smallest: OnceCell::new() }
+    }
+
     /// By the Schur complement of a body that this rank holds whole.
     pub fn by_schur_complement(body: &Body) -> Result<Self> {
         let kept: Vec<i32> = Self::free_rows(body).into_iter().map(|(_, row)| row).collect();
@@ -61,12 +69,12 @@ impl Compliance {
                 values[column * order + row] = *value;
             }
         }
-        Self { order, form: Form::Dense(values) }
+        Self::new(order, Form::Dense(values))
     }
 
     /// Of so many components, for [`Self::set_column`] to fill.
     pub fn unknown(order: usize) -> Self {
-        Self { order, form: Form::Dense(vec![0.0; order * order]) }
+        Self::new(order, Form::Dense(vec![0.0; order * order]))
     }
 
     /// Makes a column known: the displacements at `places` of the face under a unit force.
@@ -87,7 +95,7 @@ impl Compliance {
             response(&transform, &waves, &force)
         };
         let first = [column(0)?, column(1)?];
-        Ok(Self { order: 2 * columns, form: Form::Periodic { transform, waves, first } })
+        Ok(Self::new(2 * columns, Form::Periodic { transform, waves, first }))
     }
 
     /// C of each wavenumber, and the transform; none where the face is not that of a periodic layer.
@@ -95,6 +103,14 @@ impl Compliance {
         match &self.form {
             Form::Periodic { transform, waves, .. } => Some((transform, waves)),
             Form::Dense(_) => None,
+        }
+    }
+
+    /// Whether a component of the face is held.
+    pub fn is_held(&self, place: usize) -> bool {
+        match &self.form {
+            Form::Dense(values) => values[place * self.order + place] == 0.0,
+            Form::Periodic { .. } => false,
         }
     }
 
@@ -143,12 +159,51 @@ impl Compliance {
         Ok(())
     }
 
-    /// The largest diagonal entry, m per N/m.
-    pub fn largest(&self) -> f64 {
+    /// The displacement of node i under unit forces on node j, m per N/m.
+    pub fn block(&self, i: usize, j: usize) -> Matrix2<f64> {
+        let mut block = Matrix2::zeros();
         match &self.form {
-            Form::Dense(values) => values.iter().step_by(self.order + 1).fold(0.0, |most, c| c.max(most)),
-            Form::Periodic { first, .. } => first[0][0].max(first[1][1]),
+            Form::Dense(values) => {
+                for k in 0..2 {
+                    let column = &values[(2 * j + k) * self.order + 2 * i..][..2];
+                    block.column_mut(k).copy_from_slice(column);
+                }
+            }
+            Form::Periodic { first, .. } => {
+                let row = (2 * i + self.order - 2 * j) % self.order;
+                for (k, first) in first.iter().enumerate() {
+                    block.column_mut(k).copy_from_slice(&first[row..][..2]);
+                }
+            }
         }
+        block
+    }
+
+    /// About the smallest eigenvalue of C over what is not held, m per N/m: of a periodic layer exactly, of any other face
+    /// that of the shorter-waved of a checkerboard of forces along the face and one across it.
+    pub fn smallest(&self) -> f64 {
+        *self.smallest.get_or_init(|| match &self.form {
+            Form::Dense(values) => {
+                [0, 1].map(|k| checkerboard(values, self.order, k)).into_iter().fold(f64::INFINITY, f64::min)
+            }
+            Form::Periodic { waves, .. } => {
+                waves.iter().map(|c| c.symmetric_eigenvalues().min()).fold(f64::INFINITY, f64::min)
+            }
+        })
+    }
+}
+
+/// v.C v/v.v for a checkerboard v of the components k of all nodes; infinite where all are held.
+fn checkerboard(values: &[f64], order: usize, k: usize) -> f64 {
+    let sign = |node: usize| if node.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let free: Vec<usize> = (k..order).step_by(2).filter(|&place| values[place * order + place] > 0.0).collect();
+    let product = |&column: &usize| {
+        let of = free.iter().map(|&row| sign(row / 2) * values[column * order + row]).sum::<f64>();
+        sign(column / 2) * of
+    };
+    match free.len() {
+        0 => f64::INFINITY,
+        count => free.iter().map(product).sum::<f64>() / count as f64,
     }
 }
 

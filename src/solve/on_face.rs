@@ -1,4 +1,4 @@
-//! Newton's linear system on the nodes in contact.
+//! The linear system of the monolithic strategy on the nodes in contact.
 //!
 //! With B the components where T = dR/du has columns, (c 1 + C T) x = b is solved by
 //!
@@ -8,12 +8,11 @@
 
 use nalgebra::Matrix2;
 
-use super::compliance::Compliance;
+use super::response::Compliance;
 use crate::error::Result;
 use crate::interface::Tangent;
 use crate::mesh::Edge;
 use crate::petsc::DenseLu;
-use crate::snapshot::Snapshot;
 
 /// The columns of T that are not zero: for each, (row, value) in components of the face.
 #[derive(Debug, Clone, Default)]
@@ -85,31 +84,6 @@ impl Factor {
     /// T.
     pub fn columns(&self) -> &SparseColumns {
         &self.columns
-    }
-
-    /// Adds what the factor was made from to a snapshot: later solves depend on it by their last digits.
-    pub fn save(&self, snapshot: &mut Snapshot) {
-        let SparseColumns { places, entries } = &self.columns;
-        let triplets = places.iter().zip(entries).flat_map(|(&place, entries)| {
-            entries.iter().flat_map(move |&(row, value)| [place as f64, row as f64, value])
-        });
-        snapshot.put("factor", std::iter::once(self.secant).chain(triplets).collect());
-    }
-
-    /// The factor that [`Self::save`] left, with the compliance that it was made with.
-    pub fn restore(snapshot: &Snapshot, compliance: &Compliance) -> Result<Option<Self>> {
-        let Some((&secant, triplets)) = snapshot.get("factor")?.split_first() else { return Ok(None) };
-        let mut columns = SparseColumns::default();
-        for &[place, row, value] in triplets.as_chunks().0 {
-            if columns.places.last() != Some(&(place as usize)) {
-                columns.places.push(place as usize);
-                columns.entries.push(Vec::new());
-            }
-            if let Some(entries) = columns.entries.last_mut() {
-                entries.push((row as usize, value));
-            }
-        }
-        Ok(Self::new(compliance, columns, secant).ok())
     }
 
     /// x = (b - C T_B x_B) / c

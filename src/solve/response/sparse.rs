@@ -7,7 +7,6 @@ use super::remembering::{Inside, Solvers};
 use crate::bulk::Bulk;
 use crate::energy::BodyEnergy;
 use crate::error::{Error, Result};
-use crate::interface::Residual;
 use crate::petsc::{Cholesky, Matrix, Step, Vector};
 use crate::snapshot::Snapshot;
 
@@ -24,7 +23,7 @@ pub struct Sparse {
     solvers: Solvers<Solver>,
     load: Vector,
     free: Vector,
-    /// u0, per component of the face.
+    /// u_free, per component of the face.
     face: Vec<f64>,
     zero: Vector,
     work: Vector,
@@ -108,12 +107,12 @@ impl Inside for Sparse {
         self.bulk.energy()
     }
 
-    /// u = A^-1 (b - P R), and the arms with it.
-    fn commit(&mut self, step: Step, residual: &Residual) -> Result<()> {
+    /// u = A^-1 (b + P f), and the arms with it.
+    fn commit(&mut self, step: Step, forces: &[f64]) -> Result<()> {
         let mut load = self.load.view_mut()?;
-        for (force, &row) in residual.iter().zip(&self.rows) {
-            load[row] -= force.x;
-            load[row + 1] -= force.y;
+        for ([x, z], &row) in forces.as_chunks().0.iter().zip(&self.rows) {
+            load[row] += x;
+            load[row + 1] += z;
         }
         drop(load);
         self.solvers.current().ok_or_else(unprepared)?.factor.solve(&self.load, &mut self.u)?;

@@ -13,7 +13,6 @@ use crate::bulk::{Account, Products, Series};
 use crate::element::plane::Split;
 use crate::energy::BodyEnergy;
 use crate::error::Result;
-use crate::interface::Residual;
 use crate::mesh::Cell;
 use crate::petsc::{Step, Vector};
 use crate::rheology::{Factors, Memory};
@@ -129,7 +128,7 @@ pub struct Layered {
     /// The load of the step that was prepared, swept up to the face.
     swept: Vec<Wave>,
     work: Vec<Wave>,
-    /// u0, per component of the face.
+    /// u_free, per component of the face.
     face: Vec<f64>,
     /// Only where it is asked for.
     account: Option<Account>,
@@ -247,10 +246,9 @@ impl Inside for Layered {
         self.account.as_ref().map(Account::energy)
     }
 
-    fn commit(&mut self, step: Step, residual: &Residual) -> Result<()> {
-        let forces: Vec<f64> = residual.iter().flat_map(|force| [force.x, force.y]).collect();
-        for (swept, force) in self.swept.iter_mut().step_by(self.rows).zip(self.transform.forward(&forces)?) {
-            *swept -= force;
+    fn commit(&mut self, step: Step, forces: &[f64]) -> Result<()> {
+        for (swept, force) in self.swept.iter_mut().step_by(self.rows).zip(self.transform.forward(forces)?) {
+            *swept += force;
         }
         self.solvers.current().ok_or_else(unprepared)?.elimination.complete(&mut self.swept);
         self.spend(step);

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! The energy needs S = C^-1 on these displacements: the forces that the elastic body would answer them with. That is
-//! known on y, where it is the contact forces F = -R, and so, by the same recursion as that of the displacements, on all:
+//! known on y, where it is the contact forces F, and so, by the same recursion as that of the displacements, on all:
 //!
 //! ```text
 //! F = mu_0 S u + sum_i mu_i S z_i+,     S z_i+ = decay_i S z_i + gain_i (S u+ - S u)
@@ -15,16 +15,14 @@
 
 use std::rc::Rc;
 
-use super::super::face::ContactFace;
 use super::super::{BulkFields, Work};
-use super::Backing;
+use super::Response;
 use super::compliance::Compliance;
 use super::interior::Interior;
 use crate::bulk::{Account, Arms, Series};
 use crate::energy::BodyEnergy;
 use crate::error::Result;
-use crate::interface::Residual;
-use crate::petsc::{Step, Vector};
+use crate::petsc::{Gather, Step, Vector};
 use crate::snapshot::{NaturalOrder, Snapshot};
 
 /// How the body relaxes as a whole.
@@ -39,8 +37,6 @@ pub struct Relaxation {
 pub struct Following {
     /// The elastic compliance at the instantaneous moduli, on rank 0.
     pub compliance: Option<Rc<Compliance>>,
-    /// Its largest entry, m per N/m, on all ranks.
-    pub softness: f64,
     /// None = elastic.
     pub relaxation: Option<Relaxation>,
     /// What is behind the face.
@@ -62,7 +58,7 @@ pub struct FaceAccount {
     work: Vector,
 }
 
-impl Backing for Following {
+impl Response for Following {
     fn prepare(&mut self, step: Step) -> Result<()> {
         if let Some(Relaxation { arms, series }) = &self.relaxation {
             self.secant = series.secant(&arms.factors(step.dt));
@@ -70,11 +66,14 @@ impl Backing for Following {
         Ok(())
     }
 
-    fn free(&mut self, step: Step, u: &Vector, rate: &Vector, y: &mut Vector) -> Result<()> {
-        match &mut self.relaxation {
-            Some(Relaxation { arms, series }) => y.copy_from(arms.trial((0, series), step, u, rate)?),
-            None => y.copy_from(u),
+    /// Where y = 0.
+    fn free(&mut self, step: Step, free: &mut Vector) -> Result<()> {
+        free.set(0.0)?;
+        if let Some(Relaxation { arms, series }) = &mut self.relaxation {
+            let answer = arms.answering(series, step, free)?;
+            return free.copy_from(answer);
         }
+        Ok(())
     }
 
     fn secant(&self) -> f64 {
@@ -83,14 +82,6 @@ impl Backing for Following {
 
     fn compliance(&self) -> Option<&Compliance> {
         self.compliance.as_deref()
-    }
-
-    fn softness(&self) -> f64 {
-        self.softness
-    }
-
-    fn takes_forces(&self) -> bool {
-        false
     }
 
     fn work(&self) -> Work {
@@ -113,9 +104,9 @@ impl Backing for Following {
         self.account.as_ref().map(|kept| kept.account.energy())
     }
 
-    fn commit(&mut self, step: Step, u: &Vector, residual: &Residual) -> Result<()> {
+    fn commit(&mut self, step: Step, u: &Vector, forces: &[f64]) -> Result<()> {
         if let Some(account) = &mut self.account {
-            account.spend(self.relaxation.as_mut(), step, u, residual)?;
+            account.spend(self.relaxation.as_mut(), step, (u, forces))?;
         }
         self.relaxation.as_mut().map_or(Ok(()), |relaxation| relaxation.arms.commit(step, u))
     }
@@ -134,10 +125,10 @@ impl Backing for Following {
         self.relaxation.as_mut().map_or(Ok(()), |relaxation| relaxation.arms.restore("arm", order, snapshot, u))
     }
 
-    fn bulk_fields(&mut self, face: &mut ContactFace, u: &Vector) -> Result<BulkFields> {
-        let displacement = face.gather(u)?;
+    fn bulk_fields(&mut self, gather: &mut Gather, u: &Vector) -> Result<BulkFields> {
+        let displacement = gather.all(u)?;
         let effective = match &mut self.relaxation {
-            Some(Relaxation { arms, series }) => Some(face.gather(arms.accepted(series, u)?)?),
+            Some(Relaxation { arms, series }) => Some(gather.all(arms.accepted(series, u)?)?),
             None => None,
         };
         self.interior.fields(&displacement, effective.as_deref())
@@ -145,18 +136,15 @@ impl Backing for Following {
 }
 
 impl FaceAccount {
-    /// Takes the account to the end of an accepted step that ends at `u` under the contact forces -`residual`.
+    /// Takes the account to the end of an accepted step that ends at `u` under the contact forces `on_face`.
     fn spend(
         &mut self,
         relaxation: Option<&mut Relaxation>,
         step: Step,
-        u: &Vector,
-        residual: &Residual,
+        (u, on_face): (&Vector, &[f64]),
     ) -> Result<()> {
         let Self { account: Account { parts, dissipated }, forces, loads, work } = self;
-        // On all ranks: PETSc keeps norms until it sees a vector written to, on each rank for itself.
-        let entries = residual.iter().flat_map(|force| [-force.x, -force.y]);
-        forces.view_mut()?.iter_mut().zip(entries).for_each(|(place, force)| *place = force);
+        forces.view_mut()?.copy_from_slice(on_face);
         match (relaxation, loads) {
             (Some(Relaxation { arms, series }), Some(loads)) => {
                 work.copy_from(loads.answering(series, step, forces)?)?;

@@ -1,0 +1,149 @@
+//! The interface half of the residual where displacements are the unknowns: by penalty and regularised friction.
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::{Interface, State};
+use crate::element::mpjr::{Relative, Traction};
+use crate::error::{Error, Result};
+use crate::friction::Circumstances;
+use crate::loading::Placement;
+
+/// Displacements of the face's nodes, in the order of the face: x, z of each, m.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    /// At the end of a step.
+    pub end: Vec<f64>,
+    /// At its beginning, where the state was accepted.
+    pub beginning: Vec<f64>,
+}
+
+/// The residual of the face, internal minus external, N/m, per node: (x, z).
+pub type Residual = Vec<Vector2<f64>>;
+
+/// The tangent of the face: the blocks of each node with itself and, under Gauss quadrature, along each edge.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Tangent {
+    /// One block per node, N/m per m.
+    pub diagonal: Vec<Matrix2<f64>>,
+    /// Per edge, the blocks (first, second end) and (second, first end); empty under nodal quadrature.
+    pub coupling: Vec<[Matrix2<f64>; 2]>,
+}
+
+impl Surface {
+    /// At rest.
+    pub fn at_rest(nodes: usize) -> Self {
+        Self { end: vec![0.0; 2 * nodes], beginning: vec![0.0; 2 * nodes] }
+    }
+}
+
+impl Interface {
+    /// out = the residual at the end of a step to `placement`.
+    ///
+    /// # Errors
+    /// A domain error where the profile is not known.
+    pub fn residual(&mut self, placement: Placement, surface: &Surface, out: &mut Residual) -> Result<()> {
+        out.clear();
+        out.resize(self.face.x.len(), Vector2::zeros());
+        for (i, (_, traction)) in self.answers(placement, surface)?.into_iter().enumerate() {
+            let point = &self.points.all()[i];
+            let force = traction.on_layer(&point.normal) * -point.weight;
+            self.points.shares(i).iter().for_each(|&(node, share)| out[node] += force * share);
+        }
+        Ok(())
+    }
+
+    /// out = d(residual)/du.
+    ///
+    /// # Errors
+    /// As for [`Self::residual`].
+    pub fn tangent(&mut self, placement: Placement, surface: &Surface, out: &mut Tangent) -> Result<()> {
+        out.diagonal.clear();
+        out.diagonal.resize(self.face.x.len(), Matrix2::zeros());
+        out.coupling.clear();
+        for (i, (_, traction)) in self.answers(placement, surface)?.into_iter().enumerate() {
+            let block = traction.tangent * self.points.all()[i].weight;
+            let shares = self.points.shares(i);
+            shares.iter().for_each(|&(node, share)| out.diagonal[node] += block * (share * share));
+            if let [(_, a), (_, b)] = shares {
+                // Two points an edge.
+                out.coupling.resize(self.face.edges.len(), [Matrix2::zeros(); 2]);
+                out.coupling[i / 2].iter_mut().for_each(|coupling| *coupling += block * (a * b));
+            }
+        }
+        Ok(())
+    }
+
+    /// The state of each point at the end of a step.
+    ///
+    /// # Errors
+    /// As for [`Self::residual`].
+    pub fn displaced(&mut self, placement: Placement, surface: &Surface) -> Result<Vec<State<2>>> {
+        let answers = self.answers(placement, surface)?;
+        let state = |((relative, traction), before): ((Relative<2>, Traction<2>), &State<2>)| {
+            let (mut stuck, mut of_step) = (Vector2::zeros(), relative.slip);
+            if let Some(law) = self.friction() {
+                of_step -= before.elastic(law);
+                if traction.pressure > 0.0 {
+                    stuck = before.stuck_after(law, traction.sticks, (relative.slip, of_step));
+                }
+            }
+            State::of(&traction, relative.overlap, of_step, stuck)
+        };
+        Ok(answers.into_iter().zip(&self.accepted).map(state).collect())
+    }
+
+    /// The residual norm that round-off in the gap and in the slip alone can leave, N/m: eps times the slopes of the laws
+    /// times the lengths whose differences they are.
+    ///
+    /// # Errors
+    /// As for [`Self::residual`].
+    pub fn noise(&mut self, placement: Placement, surface: &Surface) -> Result<f64> {
+        let Placement { approach, sliding_rate, dt, .. } = placement;
+        let answers = self.answers(placement, surface)?;
+        let penalty = self.stiffness()?;
+        let square = |(i, (_, traction)): (usize, (Relative<2>, Traction<2>))| {
+            let point = &self.points.all()[i];
+            let moved = self.points.at(i, &surface.end);
+            let normally = moved.dot(&point.normal);
+            let height = self.clearance(i, 0.0);
+            let length = normally.abs().max(approach.abs()).max(height.min(2.0 * approach.abs()));
+            let slope = (traction.tangent - point.normal * point.normal.transpose() * penalty).norm();
+            let slid = (moved - point.normal * normally).norm().max(approach.abs()) + sliding_rate.abs() * dt;
+            (point.weight * penalty * length).powi(2) + (point.weight * slope * slid).powi(2)
+        };
+        Ok(f64::EPSILON * answers.into_iter().enumerate().map(square).sum::<f64>().sqrt())
+    }
+
+    /// The largest stiffness of a point, N/m per m.
+    pub fn stiffest(&self) -> f64 {
+        let weight = self.points.all().iter().fold(0.0, |most: f64, point| most.max(point.weight));
+        self.penalty().map_or(f64::INFINITY, |penalty| penalty * weight)
+    }
+
+    /// alpha where displacements are to decide the pressure.
+    fn stiffness(&self) -> Result<f64> {
+        self.penalty().ok_or_else(|| Error::Internal("displacements decide no pressure without a penalty".into()))
+    }
+
+    /// How each point has moved, and the tractions there.
+    fn answers(&mut self, placement: Placement, surface: &Surface) -> Result<Vec<(Relative<2>, Traction<2>)>> {
+        self.place(placement)?;
+        let penalty = self.stiffness()?;
+        let law = self.friction();
+        let Placement { approach, sliding_rate, approach_rate, dt, resolution, .. } = placement;
+        let way = Vector2::new(sliding_rate, -approach_rate) * dt;
+        let at = Circumstances { pressure: 0.0, dt, resolution: resolution * dt };
+        let answer = |(i, point): (usize, &super::Point<2>)| {
+            let normal = point.normal;
+            let (end, beginning) = (self.points.at(i, &surface.end), self.points.at(i, &surface.beginning));
+            let past = way - (end - beginning);
+            let elastic = law.map_or(Vector2::zeros(), |law| self.accepted[i].elastic(law));
+            let overlap = end.dot(&normal) - self.clearance(i, approach) * normal.y;
+            let relative = Relative { overlap, slip: past - normal * normal.dot(&past) + elastic, normal };
+            (relative, Traction::new(relative, penalty, law, at))
+        };
+        let answers: Vec<_> = self.points.all().iter().enumerate().map(answer).collect();
+        self.count_laws(answers.iter().filter(|(_, traction)| traction.pressure > 0.0).count());
+        Ok(answers)
+    }
+}

@@ -1,0 +1,87 @@
+//! What is known of a point of the contact once a step is solved.
+
+use nalgebra::SVector;
+
+use crate::element::mpjr::Traction;
+use crate::friction::Law;
+
+/// A point at an accepted state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State<const D: usize> {
+    /// p, Pa, positive in compression.
+    pub pressure: f64,
+    /// q, Pa, on the layer, tangential.
+    pub shear: SVector<f64, D>,
+    /// o, m; negative where there is a gap.
+    pub overlap: f64,
+    /// Slip of the indenter against the layer over the last step, m.
+    pub slip: SVector<f64, D>,
+    /// By how much the point has slipped while it was to stick, m: what the regularisation lets it do.
+    pub stuck: SVector<f64, D>,
+    /// Whether it sticks.
+    pub sticks: bool,
+}
+
+impl<const D: usize> Default for State<D> {
+    fn default() -> Self {
+        let none = SVector::zeros();
+        Self { pressure: 0.0, shear: none, overlap: 0.0, slip: none, stuck: none, sticks: false }
+    }
+}
+
+impl<const D: usize> State<D> {
+    /// How many numbers it is in a list.
+    pub const NUMBERS: usize = 3 + 3 * D;
+
+    /// The elastic part of the slip that the next step begins with, m.
+    pub fn elastic(&self, law: &dyn Law) -> SVector<f64, D> {
+        if law.holds() { self.stuck } else { SVector::zeros() }
+    }
+
+    /// `stuck` after a step that ends with `slip`, what a law answered to, of which the step's own part is `of_step`.
+    pub fn stuck_after(
+        &self,
+        law: &dyn Law,
+        sticks: bool,
+        (slip, of_step): (SVector<f64, D>, SVector<f64, D>),
+    ) -> SVector<f64, D> {
+        let length = slip.norm();
+        match sticks {
+            _ if law.holds() && length > 0.0 => slip * (law.elastic(length) / length),
+            true if !law.holds() => self.stuck + of_step,
+            _ => SVector::zeros(),
+        }
+    }
+
+    /// q - p n, Pa.
+    pub fn on_layer(&self, normal: &SVector<f64, D>) -> SVector<f64, D> {
+        self.shear - normal * self.pressure
+    }
+
+    /// As numbers.
+    pub fn write(&self, list: &mut Vec<f64>) {
+        list.extend([self.pressure, self.overlap, f64::from(u8::from(self.sticks))]);
+        for vector in [&self.shear, &self.slip, &self.stuck] {
+            list.extend(vector.iter());
+        }
+    }
+
+    /// From [`Self::NUMBERS`] numbers.
+    pub fn read(list: &[f64]) -> Self {
+        let vector = |i: usize| SVector::from_column_slice(&list[3 + i * D..][..D]);
+        Self {
+            pressure: list[0],
+            overlap: list[1],
+            sticks: list[2] != 0.0,
+            shear: vector(0),
+            slip: vector(1),
+            stuck: vector(2),
+        }
+    }
+
+    /// Under tractions that displacements decide.
+    pub fn of(traction: &Traction<D>, overlap: f64, slip: SVector<f64, D>, stuck: SVector<f64, D>) -> Self {
+        let Traction { pressure, shear, sticks, .. } = *traction;
+        Self { pressure, shear, overlap, slip, stuck, sticks }
+    }
+}

@@ -1,0 +1,122 @@
+//! The contact face at the accepted state: what both strategies step from.
+
+use super::Contact;
+use crate::energy::FaceEnergy;
+use crate::error::{Error, Result};
+use crate::interface::{Exchange, Interface, State};
+use crate::loading::{Phase, Placement};
+use crate::petsc::Step;
+use crate::snapshot::Snapshot;
+
+/// The face, known whole on every rank.
+pub struct AcceptedFace {
+    /// Its points and their states.
+    pub interface: Interface,
+    phase: Option<Phase>,
+    /// Of each node, x, z, m.
+    displacement: Vec<f64>,
+    /// Over the last step, m/s.
+    rate: Vec<f64>,
+    /// The length of the last step, s.
+    dt: f64,
+    /// Only where the energy is asked for.
+    exchange: Option<Exchange>,
+}
+
+impl AcceptedFace {
+    /// At rest.
+    pub fn new(interface: Interface) -> Self {
+        let at_rest = vec![0.0; 2 * interface.face().x.len()];
+        Self { interface, phase: None, rate: at_rest.clone(), displacement: at_rest, dt: 1.0, exchange: None }
+    }
+
+    /// What the following steps are driven by.
+    pub fn begin(&mut self, phase: Phase) {
+        self.phase = Some(phase);
+    }
+
+    /// Where the indenter is at the end of a step.
+    pub fn placement(&self, step: Step) -> Result<Placement> {
+        Ok(self.phase()?.placement(step.t, step.dt))
+    }
+
+    /// The length of the step before one from here, s, where that was of the same phase: within one the face goes on as it
+    /// did.
+    pub fn goes_on_from(&self, step: Step) -> Result<Option<f64>> {
+        // A quarter of the step, against round-off: the one before was half as long or longer.
+        Ok((step.t - 1.25 * step.dt > self.phase()?.start).then_some(self.dt))
+    }
+
+    /// Displacements of the nodes, x, z of each, m.
+    pub fn displacement(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    /// Their rates over the last step, m/s.
+    pub fn rate(&self) -> &[f64] {
+        &self.rate
+    }
+
+    /// How far a face that a step takes to `ends` is from where the accepted rates would have taken it, m: the root mean
+    /// square of d = u - u' - v' dt over as many nodes as carry the displacement,
+    /// (sum d^2 / sum u^2)^1/2 max |u|, so that a small contact on a long face counts for what it is.
+    pub fn departure(&self, step: Step, ends: &[f64]) -> f64 {
+        let starts = self.displacement.iter().zip(&self.rate);
+        let departed: f64 = ends.iter().zip(starts).map(|(end, (u, v))| (end - u - v * step.dt).powi(2)).sum();
+        let displaced: f64 = ends.iter().map(|u| u * u).sum();
+        let largest = ends.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+        if displaced > 0.0 { (departed / displaced).sqrt() * largest } else { departed.sqrt() }
+    }
+
+    /// Takes the accepted state to the end of a step.
+    pub fn commit(&mut self, placement: Placement, states: Vec<State<2>>, displacement: Vec<f64>) -> Result<()> {
+        for ((rate, new), old) in self.rate.iter_mut().zip(&displacement).zip(&self.displacement) {
+            *rate = (new - old) / placement.dt;
+        }
+        (self.displacement, self.dt) = (displacement, placement.dt);
+        if let Some(exchange) = &mut self.exchange {
+            exchange.advance(&mut self.interface, placement, &states)?;
+        }
+        self.interface.commit(placement, states)
+    }
+
+    /// Keeps account of the energy from here on, at rest.
+    pub fn keep_account(&mut self) -> Result<()> {
+        self.exchange = Some(Exchange::new(&mut self.interface)?);
+        Ok(())
+    }
+
+    /// The energy that went through, where it is kept account of.
+    pub fn energy(&self) -> Option<FaceEnergy> {
+        self.exchange.as_ref().map(Exchange::energy)
+    }
+
+    /// The contact.
+    pub fn contact(&mut self) -> Contact<'_> {
+        Contact { interface: &mut self.interface, displacement: &self.displacement, dt: self.dt }
+    }
+
+    /// Adds it to a snapshot.
+    pub fn save(&self, snapshot: &mut Snapshot) {
+        snapshot.put("face-displacement", self.displacement.clone());
+        snapshot.put("face-rate", self.rate.clone());
+        snapshot.put("face-dt", vec![self.dt]);
+        self.interface.save(snapshot);
+        if let Some(exchange) = &self.exchange {
+            exchange.save(snapshot);
+        }
+    }
+
+    /// Takes it from a snapshot that is whole on every rank.
+    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
+        snapshot.fill("face-displacement", &mut self.displacement)?;
+        snapshot.fill("face-rate", &mut self.rate)?;
+        [self.dt] = snapshot.numbers("face-dt")?;
+        self.interface.restore(snapshot)?;
+        self.exchange.as_mut().map_or(Ok(()), |exchange| exchange.restore(snapshot))
+    }
+
+    fn phase(&self) -> Result<&Phase> {
+        self.phase.as_ref().ok_or_else(|| Error::Internal("no phase has begun".into()))
+    }
+}

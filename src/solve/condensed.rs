@@ -1,0 +1,447 @@
+//! The body condensed onto its contact face, which is solved for its tractions (super::traction).
+//!
+//! TS's solution is the tractions, F(t, T, dT/dt) = G with neither rate nor shift: an equation whose history is kept when TS
+//! has accepted the step. The unknowns live on rank 0; the other ranks follow, and help when bulk fields are asked for.
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::{Communicator, Root};
+use nalgebra::Vector2;
+
+use super::accepted::AcceptedFace;
+use super::response::Response;
+use super::traction::{self, Answer, Behind, Factor, Fourier, Laws, Linearised, Outcome, Site};
+use super::{BulkFields, Contact, TransientProblem, Work};
+use crate::energy::Energy;
+use crate::error::{Error, Result};
+use crate::interface::{Interface, State};
+use crate::loading::{Phase, Placement};
+use crate::petsc::{Gather, Matrix, Step, Vector, Verdict};
+use crate::snapshot::{NaturalOrder, Snapshot};
+
+/// Faces with more components than this are solved by GMRES: of a periodic layer with a preconditioner by Fourier
+/// transforms, else with an older factor, so that a step costs the square of the components in contact and not the cube.
+pub const LARGE_FACE: usize = 1200;
+/// The same where there are Fourier transforms.
+pub const LARGE_PERIODIC_FACE: usize = 200;
+/// Newton steps after which a step that is not solved is begun anew, from softer laws.
+const PATIENCE: usize = 20;
+/// More applications of an old factor than this in one solve, and a new one is made.
+const STALE_AFTER: usize = 10;
+
+/// The contact problem on the face alone.
+pub struct Condensed<R> {
+    comm: SimpleCommunicator,
+    face: AcceptedFace,
+    response: R,
+    tolerance: f64,
+    /// Brings vectors of the face's nodes to all ranks.
+    gather: Gather,
+    /// u_free, and the accepted u, of the face's nodes.
+    free: Vector,
+    displacement: Vector,
+    /// The accepted tractions, and those a step before, Pa; on rank 0.
+    accepted: Vec<Vector2<f64>>,
+    before: Vec<Vector2<f64>>,
+    /// How large the accepted tractions are, in the norm of the convergence test.
+    scale: f64,
+    /// The step that is being solved; none before its first residual.
+    stage: Option<Stage>,
+    linear: Linear,
+    /// Whether a factor may serve for later tangents.
+    reuse: bool,
+    /// How often bulk fields were asked for.
+    recoveries: usize,
+}
+
+/// The points of the contact in one step.
+struct Stage {
+    step: Step,
+    placement: Placement,
+    /// On rank 0.
+    sites: Vec<Site<2>>,
+    /// The last state that was tried.
+    trial: Outcome<2>,
+    /// The norm of G at the first.
+    first: Option<f64>,
+    /// Newton steps so far.
+    newton: usize,
+}
+
+/// Newton's linear system.
+#[derive(Default)]
+struct Linear {
+    points: Vec<Linearised<2>>,
+    factor: Option<Factor<2>>,
+    fourier: Option<Fourier>,
+    /// The step that the factor was made for, and the secant.
+    made_for: Option<(Step, f64)>,
+    /// Solves since the last tangent.
+    used: usize,
+}
+
+impl<R: Response> Condensed<R> {
+    /// At rest. `layout` has x, z of each face node on rank 0; `tolerance` is relative to the tractions.
+    pub fn new(
+        comm: &SimpleCommunicator,
+        interface: Interface,
+        response: R,
+        layout: &Vector,
+        tolerance: f64,
+    ) -> Result<Self> {
+        let components = 2 * interface.face().x.len();
+        let indices: Vec<i32> = (0..components as i32).collect();
+        let points = if layout.local_len() > 0 { interface.points().count() } else { 0 };
+        Ok(Self {
+            comm: comm.duplicate(),
+            face: AcceptedFace::new(interface),
+            response,
+            tolerance,
+            gather: Gather::new(layout, &indices)?,
+            free: layout.like()?,
+            displacement: layout.like()?,
+            accepted: vec![Vector2::zeros(); points],
+            before: vec![Vector2::zeros(); points],
+            scale: 0.0,
+            stage: None,
+            linear: Linear::default(),
+            reuse: components > LARGE_FACE,
+            recoveries: 0,
+        })
+    }
+
+    /// Makes the stage that of `step`.
+    fn enter(&mut self, step: Step) -> Result<()> {
+        if self.stage.as_ref().is_some_and(|stage| stage.step == step) {
+            return Ok(());
+        }
+        self.response.prepare(step)?;
+        let placement = self.face.placement(step)?;
+        self.face.interface.place(placement)?;
+        self.response.free(step, &mut self.free)?;
+        let trial = Outcome { tractions: Vec::new(), motions: Vec::new(), answers: Vec::new() };
+        let sites = match self.behind() {
+            Some(behind) => behind.sites(&self.face, placement, &self.free.view()?),
+            None => Vec::new(),
+        };
+        self.stage = Some(Stage { step, placement, sites, trial, first: None, newton: 0 });
+        Ok(())
+    }
+
+    /// What is behind the face, on the rank that has it.
+    fn behind(&self) -> Option<Behind<'_>> {
+        let (interface, secant) = (&self.face.interface, self.response.secant());
+        self.response.compliance().map(|compliance| Behind { interface, compliance, secant })
+    }
+
+    fn laws(&self, dt: f64) -> Laws<'_> {
+        Laws { penalty: self.face.interface.penalty(), friction: self.face.interface.friction(), dt, resolution: 0.0 }
+    }
+
+    /// The displacements of the nodes under tractions, m, and the forces, N/m; on rank 0.
+    fn displaced(&self, tractions: &[Vector2<f64>]) -> Result<(Vec<f64>, Vec<f64>)> {
+        let Some(behind) = self.behind() else { return Ok((Vec::new(), Vec::new())) };
+        let forces = behind.forces(tractions);
+        let mut u = behind.displacements(&forces)?;
+        u.iter_mut().zip(self.free.view()?.iter()).for_each(|(u, free)| *u += free);
+        Ok((u, forces))
+    }
+
+    /// The laws at the tractions of a vector.
+    fn outcome(&self, u: &Vector) -> Result<Outcome<2>> {
+        let Some((behind, stage)) = self.behind().zip(self.stage.as_ref()) else {
+            return Ok(Outcome { tractions: Vec::new(), motions: Vec::new(), answers: Vec::new() });
+        };
+        let tractions = tractions(u)?;
+        if tractions == stage.trial.tractions {
+            return Ok(stage.trial.clone());
+        }
+        let motions = behind.at_points(&self.displaced(&tractions)?.0);
+        Ok(Outcome::new(&stage.sites, tractions, motions, self.laws(stage.step.dt)))
+    }
+
+    /// Gives every rank the states and displacements of rank 0. Collective.
+    fn share(&self, states: Vec<State<2>>, mut displacement: Vec<f64>) -> (Vec<State<2>>, Vec<f64>) {
+        if self.comm.size() == 1 {
+            return (states, displacement);
+        }
+        let mut list = Vec::new();
+        states.iter().for_each(|state| state.write(&mut list));
+        list.resize(State::<2>::NUMBERS * self.face.interface.points().count(), 0.0);
+        displacement.resize(self.face.displacement().len(), 0.0);
+        self.comm.process_at_rank(0).broadcast_into(&mut list[..]);
+        self.comm.process_at_rank(0).broadcast_into(&mut displacement[..]);
+        (list.chunks_exact(State::<2>::NUMBERS).map(State::read).collect(), displacement)
+    }
+
+    /// Within a phase the tractions go on as they did, or along with the indenter where that goes far in a step.
+    fn predict(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        let Some(last) = self.face.goes_on_from(step)? else { return Ok(()) };
+        let points = self.face.interface.points();
+        let way = self.face.placement(step)?.sliding_rate * step.dt;
+        let predicted: Vec<Vector2<f64>> = match points.carried(&self.accepted, way) {
+            Some(carried) => carried,
+            None => {
+                let share = step.dt / last;
+                self.accepted.iter().zip(&self.before).map(|(now, before)| now + (now - before) * share).collect()
+            }
+        };
+        // No tension.
+        let pressed =
+            predicted.iter().zip(points.all()).map(|(t, point)| t - point.normal * point.normal.dot(t).max(0.0));
+        write(u, pressed)
+    }
+
+    /// Tractions near those that meet the laws, from others.
+    fn start(&self, from: Outcome<2>) -> Result<Outcome<2>> {
+        let Some((behind, stage)) = self.behind().zip(self.stage.as_ref()) else { return Ok(from) };
+        let operator: traction::Operator<'_, 2> = (&|i, j| behind.influence(i, j), &|t| behind.moves(t));
+        traction::start(&stage.sites, from, self.laws(stage.step.dt), operator, self.tolerance)
+    }
+
+    /// Takes note of a state that was tried, and writes its residual.
+    fn tried(&mut self, outcome: Outcome<2>, f: &mut Vector) -> Result<()> {
+        write(f, outcome.answers.iter().map(|answer: &Answer<2>| answer.excess))?;
+        self.face.interface.count_laws(outcome.in_contact());
+        let stage = self.stage.as_mut().ok_or_else(unprepared)?;
+        let norm = outcome.norm(&stage.sites);
+        stage.first.get_or_insert(norm);
+        stage.trial = outcome;
+        Ok(())
+    }
+}
+
+impl<R: Response> TransientProblem for Condensed<R> {
+    fn begin(&mut self, phase: Phase) {
+        self.face.begin(phase);
+        self.stage = None;
+    }
+
+    fn residual(&mut self, step: Step, u: &Vector, _rate: &Vector, f: &mut Vector) -> Result<()> {
+        self.enter(step)?;
+        let outcome = self.outcome(u)?;
+        self.tried(outcome, f)
+    }
+
+    fn tangent(&mut self, step: Step, _u: &Vector, _rate: &Vector, _tangent: &mut Matrix) -> Result<()> {
+        let stage = self.stage.as_ref().ok_or_else(unprepared)?;
+        let points = stage.trial.linearised(&stage.sites);
+        let Some(behind) = self.behind() else { return Ok(()) };
+        let Linear { factor, made_for, used, .. } = &self.linear;
+        let fourier = match 2 * self.face.interface.face().x.len() > LARGE_PERIODIC_FACE {
+            true => Fourier::new(
+                behind.compliance,
+                behind.secant,
+                &points,
+                stage.sites.first().map_or(0.0, |site| site.weight),
+            ),
+            false => None,
+        };
+        if fourier.is_some() {
+            self.linear = Linear { points, fourier, ..Linear::default() };
+            return Ok(());
+        }
+        let same = made_for.is_some_and(|(made, secant)| made.dt == step.dt && secant == behind.secant);
+        if self.reuse && *used <= STALE_AFTER && same && factor.is_some() {
+            (self.linear.points, self.linear.used) = (points, 0);
+            return Ok(());
+        }
+        // A singular system has no factor; the solve then says so by what it returns.
+        let factor = Factor::new(points.clone(), &|i, j| behind.influence(i, j)).ok();
+        let made_for = Some((step, behind.secant));
+        self.linear = Linear { points, factor, fourier: None, made_for, used: 0 };
+        Ok(())
+    }
+
+    fn multiply(&mut self, v: &Vector, product: &mut Vector) -> Result<()> {
+        let values = match self.behind() {
+            Some(behind) => {
+                let dt = tractions(v)?;
+                traction::product(&self.linear.points, &dt, &behind.moves(&dt)?)
+            }
+            None => Vec::new(),
+        };
+        write(product, values.into_iter())
+    }
+
+    fn solve(&mut self, b: &Vector, x: &mut Vector) -> Result<()> {
+        self.linear.used += 1;
+        let right = tractions(b)?;
+        let solution = match (&self.linear, self.behind()) {
+            (Linear { fourier: Some(fourier), points, .. }, Some(_)) => fourier.solve(points, &right)?,
+            (Linear { factor: Some(factor), .. }, Some(behind)) => factor.solve(&right, |t| behind.moves(t))?,
+            _ => vec![Vector2::repeat(f64::NAN); right.len()],
+        };
+        write(x, solution.into_iter())
+    }
+
+    fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        self.predict(step, u)?;
+        if !self.face.interface.points().share_nodes() {
+            return Ok(());
+        }
+        self.enter(step)?;
+        let started = self.start(self.outcome(u)?)?;
+        write(u, started.tractions.into_iter())
+    }
+
+    fn search(&mut self, step: Step, u: &mut Vector, decrement: &Vector, f: &mut Vector) -> Result<()> {
+        let stage = self.stage.as_mut().ok_or_else(unprepared)?;
+        stage.newton += 1;
+        let astray = stage.newton == PATIENCE && self.face.displacement().len() <= LARGE_FACE;
+        let stage = self.stage.as_ref().ok_or_else(unprepared)?;
+        let outcome = match self.behind() {
+            Some(_) if astray => self.start(stage.trial.clone())?,
+            Some(behind) => {
+                let decrement = tractions(decrement)?;
+                let moved = behind.moves(&decrement)?;
+                traction::length(&stage.sites, &stage.trial, (&decrement, &moved), self.laws(step.dt)).0
+            }
+            None => stage.trial.clone(),
+        };
+        write(u, outcome.tractions.iter().copied())?;
+        self.tried(outcome, f)
+    }
+
+    /// Converged below the tolerance times the tractions (of this or the accepted state, the larger; without any, times the
+    /// first norm of the step), or at what round-off leaves. At least one iteration is made unless the first guess is as good as
+    /// round-off.
+    fn test(&mut self, iteration: usize, _norm: f64) -> Verdict {
+        let mut verdict = 0;
+        if let Some(Stage { sites, trial, first, .. }) = self.stage.as_ref().filter(|stage| !stage.sites.is_empty()) {
+            let norm = trial.norm(sites);
+            let scale = self.scale.max(trial.size(sites));
+            let reference = if scale > 0.0 { scale } else { first.unwrap_or(norm) };
+            let allowed = if iteration == 0 { 0.0 } else { self.tolerance * reference };
+            verdict = match norm {
+                norm if !norm.is_finite() => 2,
+                norm if norm <= allowed.max(trial.noise(sites)) => 1,
+                _ => 0,
+            };
+        }
+        self.comm.process_at_rank(0).broadcast_into(&mut verdict);
+        match verdict {
+            0 => Verdict::Iterate,
+            1 => Verdict::Converged,
+            _ => Verdict::Diverged,
+        }
+    }
+
+    fn departure(&mut self, step: Step, u: &Vector) -> Result<f64> {
+        let mut ends = self.displaced(&tractions(u)?)?.0;
+        ends.resize(self.face.displacement().len(), 0.0);
+        self.comm.process_at_rank(0).broadcast_into(&mut ends[..]);
+        Ok(self.face.departure(step, &ends))
+    }
+
+    /// What is accepted are the tractions that the laws made of the last ones: they keep the laws to the last digit.
+    fn commit(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        self.enter(step)?;
+        let outcome = self.outcome(u)?;
+        let stage = self.stage.take().ok_or_else(unprepared)?;
+        let met = outcome.met(&stage.sites);
+        let laws = self.laws(step.dt);
+        let ends = stage.sites.iter().zip(&outcome.answers).zip(&outcome.motions).zip(self.face.interface.states());
+        let states: Vec<State<2>> =
+            ends.map(|(((site, answer), motion), before)| answer.state(site, motion, laws, before)).collect();
+        let (displacement, forces) = self.displaced(&met)?;
+        self.scale = outcome.size(&stage.sites);
+        write(u, met.iter().copied())?;
+        self.before = std::mem::replace(&mut self.accepted, met);
+        self.displacement.view_mut()?.copy_from_slice(&displacement);
+        let (states, displacement) = self.share(states, displacement);
+        self.face.commit(stage.placement, states, displacement)?;
+        self.response.commit(step, &self.displacement, &forces)
+    }
+
+    fn keep_account(&mut self, _layout: &Vector) -> Result<()> {
+        self.face.keep_account()?;
+        self.response.keep_account(&self.displacement)
+    }
+
+    fn energy(&self) -> Option<Energy> {
+        self.face.energy().zip(self.response.energy()).map(|(face, body)| Energy::new(face, body))
+    }
+
+    fn save(&mut self, _u: &Vector, snapshot: &mut Snapshot) -> Result<()> {
+        let flat = |list: &[Vector2<f64>]| list.iter().flat_map(|t| [t.x, t.y]).collect();
+        snapshot.put("tractions", flat(&self.accepted));
+        snapshot.put("tractions-before", flat(&self.before));
+        self.face.save(snapshot);
+        let mut order = NaturalOrder::on_first_rank(&self.displacement)?;
+        self.response.save(&mut order, snapshot)?;
+        let Linear { factor, made_for, used, .. } = &self.linear;
+        let (Step { t, dt }, secant) = made_for.unwrap_or((Step { t: 0.0, dt: 0.0 }, 0.0));
+        snapshot.put("condensed", vec![self.scale, t, dt, secant, *used as f64]);
+        if let Some(factor) = factor.as_ref().filter(|_| self.reuse) {
+            snapshot.put("factor", factor.points().iter().flat_map(Linearised::numbers).collect());
+        }
+        Ok(())
+    }
+
+    fn restore(&mut self, snapshot: &Snapshot, u: &mut Vector) -> Result<()> {
+        for (name, list) in [("tractions", &mut self.accepted), ("tractions-before", &mut self.before)] {
+            let mut flat = vec![0.0; 2 * list.len()];
+            if !flat.is_empty() {
+                snapshot.fill(name, &mut flat)?;
+            }
+            *list = flat.as_chunks().0.iter().map(|&[x, z]| Vector2::new(x, z)).collect();
+        }
+        write(u, self.accepted.iter().copied())?;
+        self.face.restore(snapshot)?;
+        let mut here = self.displacement.view_mut()?;
+        here.iter_mut().zip(self.face.displacement()).for_each(|(here, u)| *here = *u);
+        drop(here);
+        let order = NaturalOrder::on_first_rank(&self.displacement)?;
+        self.response.restore(&order, snapshot, &self.displacement)?;
+        let [scale, t, dt, secant, used] = snapshot.numbers("condensed")?;
+        (self.scale, self.stage, self.linear) = (scale, None, Linear::default());
+        if !self.reuse || !snapshot.has("factor") {
+            return Ok(());
+        }
+        // Its compliance is that of the step that it was made for.
+        let step = Step { t, dt };
+        self.response.prepare(step)?;
+        if let Some(behind) = self.behind() {
+            let points = snapshot.get("factor")?.chunks_exact(Linearised::<2>::NUMBERS).map(Linearised::read).collect();
+            let factor = Factor::new(points, &|i, j| behind.influence(i, j)).ok();
+            self.linear = Linear { factor, made_for: Some((step, secant)), used: used as usize, ..Linear::default() };
+        }
+        Ok(())
+    }
+
+    fn contact(&mut self) -> Result<Contact<'_>> {
+        Ok(self.face.contact())
+    }
+
+    fn bulk_fields(&mut self, _u: &Vector) -> Result<BulkFields> {
+        self.recoveries += 1;
+        self.response.bulk_fields(&mut self.gather, &self.displacement)
+    }
+
+    fn work(&self) -> Work {
+        Work {
+            tangential_laws: self.face.interface.tangential_laws(),
+            recoveries: self.recoveries,
+            ..self.response.work()
+        }
+    }
+}
+
+/// The tractions in a vector of the unknowns, on this rank.
+fn tractions(u: &Vector) -> Result<Vec<Vector2<f64>>> {
+    Ok(u.view()?.as_chunks().0.iter().map(|&[x, z]| Vector2::new(x, z)).collect())
+}
+
+/// Writes them.
+fn write(u: &mut Vector, tractions: impl Iterator<Item = Vector2<f64>>) -> Result<()> {
+    for (place, value) in u.view_mut()?.as_chunks_mut().0.iter_mut().zip(tractions) {
+        let [x, z] = place;
+        (*x, *z) = (value.x, value.y);
+    }
+    Ok(())
+}
+
+/// A defect: a step goes on that never began.
+fn unprepared() -> Error {
+    Error::Internal("no step was prepared".into())
+}

@@ -1,0 +1,116 @@
+//! The body behind the points of the contact, and the points in a step.
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::super::accepted::AcceptedFace;
+use super::super::response::Compliance;
+use super::{Moduli, Site};
+use crate::error::Result;
+use crate::interface::{Interface, Point};
+use crate::loading::Placement;
+
+/// A compliance over its secant, m per N/m, before the points of a face.
+#[derive(Clone, Copy)]
+pub struct Behind<'a> {
+    /// The points.
+    pub interface: &'a Interface,
+    /// C
+    pub compliance: &'a Compliance,
+    /// c
+    pub secant: f64,
+}
+
+impl Behind<'_> {
+    /// The forces of tractions on the nodes, N/m; what is held takes none.
+    pub fn forces(&self, tractions: &[Vector2<f64>]) -> Vec<f64> {
+        let points = self.interface.points();
+        let mut forces = vec![0.0; self.compliance.order()];
+        for (i, (point, traction)) in points.all().iter().zip(tractions).enumerate() {
+            for &(node, share) in points.shares(i) {
+                let force = traction * (share * point.weight);
+                forces[2 * node] += force.x;
+                forces[2 * node + 1] += force.y;
+            }
+        }
+        forces.iter_mut().enumerate().filter(|(i, _)| self.compliance.is_held(*i)).for_each(|(_, force)| *force = 0.0);
+        forces
+    }
+
+    /// The displacements of the nodes under forces on them, m.
+    pub fn displacements(&self, forces: &[f64]) -> Result<Vec<f64>> {
+        let mut u = vec![0.0; forces.len()];
+        self.compliance.add_displacements(forces.iter().copied().enumerate(), &mut u)?;
+        u.iter_mut().for_each(|u| *u /= self.secant);
+        Ok(u)
+    }
+
+    /// The motion of the points under tractions, m.
+    pub fn moves(&self, tractions: &[Vector2<f64>]) -> Result<Vec<Vector2<f64>>> {
+        Ok(self.at_points(&self.displacements(&self.forces(tractions))?))
+    }
+
+    /// What displacements of the nodes are at the points.
+    pub fn at_points(&self, u: &[f64]) -> Vec<Vector2<f64>> {
+        let points = self.interface.points();
+        (0..points.count()).map(|i| points.at(i, u)).collect()
+    }
+
+    /// The motion of point i under a unit traction at j, m/Pa.
+    pub fn influence(&self, i: usize, j: usize) -> Matrix2<f64> {
+        let points = self.interface.points();
+        let weight = points.all()[j].weight / self.secant;
+        match (points.shares(i), points.shares(j)) {
+            ([(a, _)], [(b, _)]) => self.compliance.block(*a, *b) * weight,
+            (of_i, of_j) => {
+                let pairs = of_i.iter().flat_map(|a| of_j.iter().map(move |b| (a, b)));
+                pairs.map(|((a, na), (b, nb))| self.compliance.block(*a, *b) * (na * nb * weight)).sum()
+            }
+        }
+    }
+
+    /// rho of a point: 1 over the geometric mean of what the body answers the point's own traction with and what it answers
+    /// the shortest wave of tractions with. Where the body is held it answers with nothing.
+    fn moduli(&self, i: usize, penalty: Option<f64>) -> Moduli {
+        /// Beside the larger one, a compliance that is none.
+        const NONE: f64 = 1e-12;
+        let point = &self.interface.points().all()[i];
+        let own = self.influence(i, i);
+        let stiffest = self.compliance.smallest() * point.weight / self.secant;
+        let normal = point.normal.dot(&(own * point.normal));
+        let tangential = own.trace() - normal;
+        let rho = |own: f64, other: f64| (own > NONE * other).then(|| 1.0 / (own * stiffest).sqrt());
+        Moduli {
+            // A held point needs no more than its penalty.
+            normal: rho(normal, tangential).or(penalty).unwrap_or(1.0),
+            tangential: rho(tangential, normal),
+        }
+    }
+
+    /// The points in a step to `placement`, where the profile was placed, from the accepted face; `free` is what the nodes do
+    /// without contact, m.
+    pub fn sites(&self, accepted: &AcceptedFace, placement: Placement, free: &[f64]) -> Vec<Site<2>> {
+        let interface = self.interface;
+        let Placement { approach, sliding_rate, approach_rate, dt, .. } = placement;
+        let way = Vector2::new(sliding_rate, -approach_rate) * dt;
+        let site = |(i, point): (usize, &Point<2>)| {
+            let past = interface.points().at(i, accepted.displacement());
+            let elastic = interface.friction().map_or(Vector2::zeros(), |law| interface.states()[i].elastic(law));
+            let vertical = interface.clearance(i, approach);
+            let moved = interface.points().at(i, free).norm();
+            let height = vertical + approach;
+            Site {
+                normal: point.normal,
+                weight: point.weight,
+                clearance: vertical * point.normal.y,
+                drive: way + past + elastic,
+                elastic,
+                moduli: self.moduli(i, interface.penalty()),
+                lengths: [
+                    moved.max(approach.abs()).max(height.min(2.0 * approach.abs())),
+                    moved.max(past.norm()).max(way.norm()),
+                ],
+            }
+        };
+        interface.points().all().iter().enumerate().map(site).collect()
+    }
+}

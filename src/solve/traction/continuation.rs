@@ -1,0 +1,78 @@
+//! A start for Newton's method where it finds no way from where the contact was.
+//!
+//! Two Gauss points to an edge are twice as many as its nodes, so that there are tractions which together do nothing; a penalty
+//! alone decides between them, and the stiffer it is, the less. Newton's method from where the contact was then finds no way
+//! to which of the points carry; nor does it, now and then, to which of the nodes slip which way. It does from softer laws, whose answer is never far from that of laws a little stiffer: so they are
+//! met one after the other (continuation; Allgower and Georg, Numerical Continuation Methods, 1990).
+
+use nalgebra::SVector;
+
+use super::search::{Operator, Outcome, settle};
+use super::{Laws, Site};
+use crate::error::Result;
+use crate::friction::{Circumstances, Law, Shear};
+
+/// Iterations from where the contact was, before laws are softened, and of each softer law.
+const DIRECT: usize = 20;
+const EACH: usize = 25;
+/// The softest penalty and friction's sharpness, beside the body's own; and how much stiffer the next are.
+const SOFTEST: f64 = 1e-1;
+const STIFFER: f64 = 10.0;
+const MOST_STAGES: i32 = 20;
+
+/// Tractions near where the laws hold, from others.
+pub fn start<const D: usize>(
+    sites: &[Site<D>],
+    from: Outcome<D>,
+    laws: Laws<'_>,
+    operator: Operator<'_, D>,
+    tolerance: f64,
+) -> Result<Outcome<D>> {
+    let direct = settle(sites, from.clone(), laws, operator, DIRECT)?;
+    if direct.norm(sites) <= tolerance * direct.size(sites).max(from.size(sites)) {
+        return Ok(direct);
+    }
+    let rho = sites.iter().fold(0.0, |most: f64, site| most.max(site.moduli.normal));
+    let slip = sites.iter().map(|site| site.relative(&SVector::zeros()).slip.norm()).fold(0.0, f64::max);
+    let mut at = from;
+    for stage in 0..MOST_STAGES {
+        let stiffness = SOFTEST * STIFFER.powi(stage);
+        let penalty = laws.penalty.map(|penalty| penalty.min(stiffness * rho));
+        let sharpest = laws.friction.map_or(1.0, |law| (law.sharpness(laws.dt) * stiffness / slip).min(1.0));
+        let softened = laws.friction.map(|law| Softened { law, share: sharpest });
+        let softer = Laws { penalty, friction: softened.as_ref().map(|law| law as &dyn Law), ..laws };
+        let answered = Outcome::new(sites, at.tractions, at.motions, softer);
+        at = settle(sites, answered, softer, operator, EACH)?;
+        if penalty == laws.penalty && sharpest == 1.0 {
+            break;
+        }
+    }
+    let at = Outcome::new(sites, at.tractions, at.motions, laws);
+    Ok(if at.norm(sites) <= direct.norm(sites) { at } else { direct })
+}
+
+/// A law whose shear turns over a slip that is longer by 1/share.
+#[derive(Debug)]
+struct Softened<'a> {
+    law: &'a dyn Law,
+    share: f64,
+}
+
+impl Law for Softened<'_> {
+    fn coefficient(&self) -> f64 {
+        self.law.coefficient()
+    }
+
+    fn shear(&self, at: Circumstances, slip: f64) -> Shear {
+        let Shear { shear, by_slip, by_pressure } = self.law.shear(at, slip * self.share);
+        Shear { shear, by_slip: by_slip * self.share, by_pressure }
+    }
+
+    fn sharpness(&self, dt: f64) -> f64 {
+        self.law.sharpness(dt) / self.share
+    }
+
+    fn sticks(&self, at: Circumstances, slip: f64) -> bool {
+        self.law.sticks(at, slip * self.share)
+    }
+}

@@ -1,0 +1,247 @@
+//! The contact face solved for its tractions.
+//!
+//! Behind the face stands a body that answers the tractions t = q - p n on the layer linearly, with the motion M = M_free + C t.
+//! At each point, with the overlap o = M.n - c and the slip s = T (V dt - (M - M_old)) + e_n (crate::element::mpjr), any moduli
+//! rho > 0 make of the laws a projection:
+//!
+//! ```text
+//! p* = alpha/(alpha + rho_n) max(p + rho_n o, 0)
+//! q* = |q|(m) e,    m >= 0 where |q|(m) + rho_t m = |q + rho_t s|,    e along q + rho_t s
+//! G  = t - t*
+//! ```
+//!
+//! G is a traction, and zero exactly where the laws hold, whatever rho (Alart and Curnier, Comput. Methods Appl. Mech. Engrg. 92
+//! (1991) 353, with the laws' own softness). No penetration, alpha = infinity, and Coulomb's law itself are ordinary values:
+//! nothing stiff is left in G. Newton's method on it is [`linear`].
+
+mod behind;
+mod continuation;
+mod dense;
+mod fourier;
+mod linear;
+mod search;
+
+use nalgebra::SVector;
+
+use crate::element::mpjr::Relative;
+use crate::friction::{Circumstances, Law, Met};
+use crate::interface::State;
+
+pub use behind::Behind;
+pub use continuation::start;
+pub use dense::Factor;
+pub use fourier::Fourier;
+pub use linear::{Linearised, product};
+pub use search::{Operator, Outcome, length, settle};
+
+/// A point of the contact during a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Site<const D: usize> {
+    /// n
+    pub normal: SVector<f64, D>,
+    /// The length, or area, that it stands for.
+    pub weight: f64,
+    /// c n_z, m: o = M.n less this.
+    pub clearance: f64,
+    /// V dt + M_old + e_n, m: s = T of this less T M.
+    pub drive: SVector<f64, D>,
+    /// e_n, m
+    pub elastic: SVector<f64, D>,
+    /// What the layer's answer to the point's own traction asks for.
+    pub moduli: Moduli,
+    /// What the digits of o and of s are taken from, m.
+    pub lengths: [f64; 2],
+}
+
+/// rho, Pa/m, for the normal and the tangential law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moduli {
+    /// rho_n
+    pub normal: f64,
+    /// rho_t; none where the layer is held along the face, so that the slip is known and the law explicit.
+    pub tangential: Option<f64>,
+}
+
+/// The laws of a step.
+#[derive(Debug, Clone, Copy)]
+pub struct Laws<'a> {
+    /// alpha, Pa/m; none = no penetration.
+    pub penalty: Option<f64>,
+    /// None = frictionless.
+    pub friction: Option<&'a dyn Law>,
+    /// The length of the step, s.
+    pub dt: f64,
+    /// See [`Circumstances::resolution`], m: 0 but where displacements are to say the same.
+    pub resolution: f64,
+}
+
+/// What the laws make of a traction and a motion at one point, with derivatives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer<const D: usize> {
+    /// p*, Pa.
+    pub pressure: f64,
+    /// q*, Pa.
+    pub shear: SVector<f64, D>,
+    /// G = t - t*, Pa.
+    pub excess: SVector<f64, D>,
+    /// Whether p + rho_n o > 0: the point is in contact.
+    pub active: bool,
+    /// theta = alpha/(alpha + rho_n), and 1 - theta to all its digits.
+    pub stiff: f64,
+    /// See `stiff`.
+    pub soft: f64,
+    /// K/(K + rho_t) along e and across it, K the slope of |q| and its secant, and 1 less each.
+    pub grip: [f64; 2],
+    /// See `grip`.
+    pub slack: [f64; 2],
+    /// e, of no length where nothing pulls.
+    pub direction: SVector<f64, D>,
+    /// d|q|/dp
+    pub drag: f64,
+    /// s as the law leaves it: m e, m.
+    pub slip: SVector<f64, D>,
+    /// Whether it sticks.
+    pub sticks: bool,
+    /// The square of what round-off leaves of G, Pa^2.
+    pub noise: f64,
+}
+
+impl<const D: usize> Site<D> {
+    /// Overlap and slip under a motion M.
+    pub fn relative(&self, motion: &SVector<f64, D>) -> Relative<D> {
+        let past = self.drive - motion;
+        let slip = past - self.normal * self.normal.dot(&past);
+        Relative { overlap: self.normal.dot(motion) - self.clearance, slip, normal: self.normal }
+    }
+
+    /// What the laws make of a traction and a motion.
+    pub fn answer(&self, traction: &SVector<f64, D>, motion: &SVector<f64, D>, laws: Laws<'_>) -> Answer<D> {
+        let Relative { overlap, slip, normal } = self.relative(motion);
+        let rho = self.moduli.normal;
+        let pressure = -normal.dot(traction);
+        let shear = traction + normal * pressure;
+        let trial = pressure + rho * overlap;
+        let mut answer = Answer::open(*traction, slip);
+        answer.noise = (f64::EPSILON * (pressure.abs() + rho * self.lengths[0])).powi(2);
+        if trial <= 0.0 {
+            return answer;
+        }
+        (answer.active, (answer.stiff, answer.soft)) = (true, softened(laws.penalty, rho));
+        let pressed = answer.stiff * trial;
+        let mut closed = SVector::zeros();
+        if let Some(law) = laws.friction {
+            let at = Circumstances { pressure: pressed, dt: laws.dt, resolution: laws.resolution };
+            closed = self.meet(law, at, (shear, slip), &mut answer);
+        }
+        (answer.pressure, answer.shear) = (pressed, closed);
+        answer.excess = (shear - closed) - normal * (pressure - pressed);
+        answer
+    }
+
+    /// q*, and what is known of it.
+    fn meet(
+        &self,
+        law: &dyn Law,
+        at: Circumstances,
+        (shear, slip): (SVector<f64, D>, SVector<f64, D>),
+        answer: &mut Answer<D>,
+    ) -> SVector<f64, D> {
+        let Some(rho) = self.moduli.tangential else { return held(law, at, (shear, slip), answer) };
+        let pull = shear + slip * rho;
+        let reach = pull.norm();
+        answer.direction = if reach > 0.0 { pull / reach } else { SVector::zeros() };
+        let Met { slip, shear } = law.meet(at, reach, rho);
+        let secant = if slip > 0.0 { shear.shear / slip } else { shear.by_slip };
+        for (i, slope) in [shear.by_slip, secant].into_iter().enumerate() {
+            let [grip, slack] =
+                if slope.is_infinite() { [1.0, 0.0] } else { [slope / (slope + rho), rho / (slope + rho)] };
+            (answer.grip[i], answer.slack[i]) = (grip, slack);
+        }
+        answer.drag = shear.by_pressure;
+        answer.slip = answer.direction * slip;
+        answer.sticks = law.sticks(at, slip);
+        answer.noise += (f64::EPSILON * (reach + answer.grip[0] * rho * self.lengths[1])).powi(2);
+        answer.direction * shear.shear
+    }
+}
+
+/// Where the layer is held along the face its motion answers to no traction: the law says q of the slip that there is. At no
+/// slip, Coulomb's law itself takes any q that it allows.
+fn held<const D: usize>(
+    law: &dyn Law,
+    at: Circumstances,
+    (shear, slip): (SVector<f64, D>, SVector<f64, D>),
+    answer: &mut Answer<D>,
+) -> SVector<f64, D> {
+    let length = slip.norm();
+    let bound = law.coefficient() * at.pressure;
+    let any = length == 0.0 && law.shear(at, 0.0).by_slip.is_infinite();
+    let met = law.shear(at, length);
+    answer.slip = slip;
+    answer.sticks = law.sticks(at, length);
+    let by = if any { shear } else { slip };
+    let size = by.norm();
+    answer.direction = if size > 0.0 { by / size } else { SVector::zeros() };
+    answer.drag = if any { 0.0 } else { met.by_pressure };
+    if any { answer.direction * size.min(bound) } else { answer.direction * met.shear }
+}
+
+/// alpha/(alpha + rho) and rho/(alpha + rho).
+fn softened(penalty: Option<f64>, rho: f64) -> (f64, f64) {
+    match penalty {
+        Some(alpha) => (alpha / (alpha + rho), rho / (alpha + rho)),
+        None => (1.0, 0.0),
+    }
+}
+
+impl<const D: usize> Answer<D> {
+    /// Out of contact: t* = 0.
+    fn open(traction: SVector<f64, D>, slip: SVector<f64, D>) -> Self {
+        Self {
+            pressure: 0.0,
+            shear: SVector::zeros(),
+            excess: traction,
+            active: false,
+            stiff: 0.0,
+            soft: 1.0,
+            grip: [0.0; 2],
+            slack: [1.0; 2],
+            direction: SVector::zeros(),
+            drag: 0.0,
+            slip,
+            sticks: false,
+            noise: 0.0,
+        }
+    }
+
+    /// The motion from which the laws make, by displacements, the traction that they have met, to all its digits, m; only in
+    /// contact.
+    pub fn motion(&self, site: &Site<D>, penalty: f64) -> SVector<f64, D> {
+        let past = site.drive - self.slip;
+        past + site.normal * (site.clearance + self.pressure / penalty - site.normal.dot(&past))
+    }
+
+    /// t* = q* - p* n, Pa.
+    pub fn met(&self, site: &Site<D>) -> SVector<f64, D> {
+        self.shear - site.normal * self.pressure
+    }
+
+    /// The point as the laws leave it, t* and what goes with it, after a step from `before`; in a gap, under a motion.
+    pub fn state(&self, site: &Site<D>, motion: &SVector<f64, D>, laws: Laws<'_>, before: &State<D>) -> State<D> {
+        let Relative { overlap, .. } = site.relative(motion);
+        let of_step = self.slip - site.elastic;
+        if !self.active {
+            return State { overlap: overlap.min(0.0), slip: of_step, ..State::default() };
+        }
+        State {
+            pressure: self.pressure,
+            shear: self.shear,
+            overlap: laws.penalty.map_or(0.0, |alpha| self.pressure / alpha),
+            slip: of_step,
+            stuck: laws
+                .friction
+                .map_or(SVector::zeros(), |law| before.stuck_after(law, self.sticks, (self.slip, of_step))),
+            sticks: self.sticks,
+        }
+    }
+}

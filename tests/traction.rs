@@ -1,0 +1,182 @@
+//! The face solved for its tractions: derivatives against differences, the linear system against its product, solutions, in the
+//! plane and in space. (LAPACK is called through PETSc, which wants MPI.)
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "common/mpi.rs"]
+mod mpi_cases;
+
+use std::path::Path;
+
+use mpi::topology::SimpleCommunicator;
+use mpi_cases::Case;
+use mpjr::friction::{Coulomb, CoulombTanh, ElasticSlip, Law};
+use mpjr::interface::State;
+use mpjr::solve::traction::{Factor, Laws, Moduli, Operator, Outcome, Site, product, settle};
+use nalgebra::{DMatrix, SMatrix, SVector};
+
+const CASES: &[Case] = &[
+    Case::new("the_linear_system_is_the_derivative", &[1], the_linear_system_is_the_derivative),
+    Case::new("the_solution_does_not_depend_on_rho", &[1], the_solution_does_not_depend_on_rho),
+    Case::new("a_held_point_has_the_shear_of_its_slip", &[1], a_held_point_has_the_shear_of_its_slip),
+];
+
+fn main() {
+    mpi_cases::main(CASES);
+}
+
+/// Deterministic numbers in [-1, 1).
+struct Draw(u64);
+
+impl Draw {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn vector<const D: usize>(&mut self) -> SVector<f64, D> {
+        SVector::from_fn(|_, _| self.unit())
+    }
+}
+
+/// A few points before a body of random compliance: some stick, some slip, some are open.
+struct Face<const D: usize> {
+    sites: Vec<Site<D>>,
+    compliance: DMatrix<f64>,
+    free: Vec<SVector<f64, D>>,
+    tractions: Vec<SVector<f64, D>>,
+}
+
+impl<const D: usize> Face<D> {
+    fn new(count: usize, draw: &mut Draw) -> Self {
+        let root = DMatrix::from_fn(D * count, D * count, |_, _| draw.unit());
+        let compliance = &root * root.transpose() + DMatrix::identity(D * count, D * count);
+        let site = |_| Site {
+            normal: (SVector::<f64, D>::from_fn(|i, _| f64::from(u8::from(i + 1 == D))) + draw.vector() * 0.3)
+                .normalize(),
+            weight: 1.0 + 0.5 * draw.unit(),
+            clearance: 0.2 * draw.unit() - 0.5,
+            drive: draw.vector(),
+            elastic: SVector::zeros(),
+            moduli: Moduli { normal: 0.3, tangential: Some(0.4) },
+            lengths: [1.0; 2],
+        };
+        let sites = (0..count).map(site).collect();
+        let mut vectors = || (0..count).map(|_| draw.vector()).collect::<Vec<_>>();
+        Self { sites, compliance, free: vectors(), tractions: vectors() }
+    }
+
+    fn block(&self, i: usize, j: usize) -> SMatrix<f64, D, D> {
+        self.compliance.fixed_view::<D, D>(D * i, D * j) * self.sites[j].weight
+    }
+
+    fn moves(&self, tractions: &[SVector<f64, D>]) -> Vec<SVector<f64, D>> {
+        let of = |i| tractions.iter().enumerate().map(|(j, t)| self.block(i, j) * t).sum();
+        (0..tractions.len()).map(of).collect()
+    }
+
+    fn outcome(&self, tractions: Vec<SVector<f64, D>>, laws: Laws<'_>) -> Outcome<D> {
+        let motions = self.moves(&tractions).iter().zip(&self.free).map(|(moved, free)| moved + free).collect();
+        Outcome::new(&self.sites, tractions, motions, laws)
+    }
+}
+
+fn excesses<const D: usize>(outcome: &Outcome<D>) -> Vec<SVector<f64, D>> {
+    outcome.answers.iter().map(|answer| answer.excess).collect()
+}
+
+fn all_laws(check: impl Fn(Laws<'_>)) {
+    let tanh = CoulombTanh { coefficient: 0.4, regularisation: 0.9 };
+    let elastic = ElasticSlip { coefficient: 0.4, elastic_slip: 0.7 };
+    let exact = Coulomb { coefficient: 0.4 };
+    let friction: [Option<&dyn Law>; 4] = [None, Some(&tanh), Some(&elastic), Some(&exact)];
+    for penalty in [None, Some(2.0)] {
+        friction.iter().for_each(|&friction| check(Laws { penalty, friction, dt: 0.5, resolution: 0.0 }));
+    }
+}
+
+/// J dt against central differences of G, and J (J^-1 b) = b, for every law and with no penetration.
+fn the_linear_system_is_the_derivative(_: &SimpleCommunicator, _: &Path) {
+    derivative::<2>();
+    derivative::<3>();
+}
+
+fn derivative<const D: usize>() {
+    all_laws(|laws| {
+        let mut draw = Draw(3);
+        let face = Face::<D>::new(7, &mut draw);
+        let at = face.outcome(face.tractions.clone(), laws);
+        assert!((2..7).contains(&at.in_contact()), "{}", at.in_contact());
+        let points = at.linearised(&face.sites);
+        let dt: Vec<SVector<f64, D>> = (0..7).map(|_| draw.vector()).collect();
+        let exact = product(&points, &dt, &face.moves(&dt));
+        let step = 1e-7;
+        let shifted = |h: f64| {
+            let t = face.tractions.iter().zip(&dt).map(|(t, dt)| t + dt * h).collect();
+            excesses(&face.outcome(t, laws))
+        };
+        for ((plus, minus), exact) in shifted(step).iter().zip(shifted(-step)).zip(&exact) {
+            assert!(((plus - minus) / (2.0 * step) - exact).norm() < 2e-7, "{laws:?}");
+        }
+        let factor = Factor::new(points.clone(), &|i, j| face.block(i, j)).unwrap();
+        let solved = factor.solve(&dt, |t| Ok(face.moves(t))).unwrap();
+        for (back, b) in product(&points, &solved, &face.moves(&solved)).iter().zip(&dt) {
+            assert!((back - b).norm() < 1e-9, "{laws:?}");
+        }
+    });
+}
+
+/// Newton's method ends where the laws hold, whatever rho: in the plane and in space, exact laws too. Pressures and shears of
+/// two rho differ by round-off.
+fn the_solution_does_not_depend_on_rho(_: &SimpleCommunicator, _: &Path) {
+    solution::<2>();
+    solution::<3>();
+}
+
+fn solution<const D: usize>() {
+    all_laws(|laws| {
+        let mut solved = Vec::new();
+        for rho in [0.05, 0.4] {
+            let mut face = Face::<D>::new(9, &mut Draw(11));
+            for site in &mut face.sites {
+                site.moduli = Moduli { normal: rho, tangential: Some(1.3 * rho) };
+            }
+            let from = face.outcome(vec![SVector::zeros(); 9], laws);
+            let operator: Operator<'_, D> = (&|i, j| face.block(i, j), &|t| Ok(face.moves(t)));
+            let end = settle(&face.sites, from, laws, operator, 60).unwrap();
+            assert!(end.norm(&face.sites) <= end.noise(&face.sites), "{laws:?} {rho}: {:e}", end.norm(&face.sites));
+            for ((site, answer), motion) in face.sites.iter().zip(&end.answers).zip(&end.motions) {
+                let state = answer.state(site, motion, laws, &State::default());
+                let f = laws.friction.map_or(0.0, Law::coefficient);
+                assert!(state.pressure >= 0.0 && state.shear.norm() <= f * state.pressure * (1.0 + 1e-14));
+            }
+            solved.push(end.tractions);
+        }
+        for (a, b) in solved[0].iter().zip(&solved[1]) {
+            assert!((a - b).norm() < 1e-12, "{laws:?}: {a} {b}");
+        }
+    });
+}
+
+/// A point that is held along the face answers with what its law says of the slip, or takes any shear that Coulomb allows.
+fn a_held_point_has_the_shear_of_its_slip(_: &SimpleCommunicator, _: &Path) {
+    let law = Coulomb { coefficient: 0.5 };
+    let laws = Laws { penalty: Some(4.0), friction: Some(&law), dt: 1.0, resolution: 0.0 };
+    let site = |slip: f64| Site {
+        normal: SVector::from([0.0, 1.0]),
+        weight: 1.0,
+        clearance: -1.0,
+        drive: SVector::from([slip, 0.0]),
+        elastic: SVector::zeros(),
+        moduli: Moduli { normal: 4.0, tangential: None },
+        lengths: [1.0; 2],
+    };
+    let met = |slip: f64, shear: f64| {
+        let site = site(slip);
+        site.answer(&SVector::from([shear, -4.0]), &SVector::zeros(), laws).met(&site)
+    };
+    // p = alpha o = 4 Pa.
+    assert_eq!(met(0.1, 0.3), SVector::from([2.0, -4.0]));
+    assert_eq!(met(-0.1, 0.3), SVector::from([-2.0, -4.0]));
+    assert_eq!(met(0.0, 0.3), SVector::from([0.3, -4.0]));
+    assert_eq!(met(0.0, -7.0), SVector::from([-2.0, -4.0]));
+}
