@@ -217,13 +217,14 @@ fn check_prints_the_resolved_scene() {
     }
 }
 
-/// A solver that is allowed one Newton iteration cannot follow contact that grows or begins to slip: after the stated number of cuts the
+/// A solver that is allowed one Newton iteration cannot follow strong friction that begins to slip: after the stated number of cuts the
 /// run ends with code 3, and the file holds what was accepted: rows of finite numbers, ever later, each of them a
 /// converged state (the force of a shorter run that ends at the same time).
 #[test]
 fn no_convergence_keeps_what_was_accepted() {
     for ranks in [1, 2] {
-        let outcome = Run::new(SLIDING).set("layer.cells=[32,16]").petsc("-snes_max_it 1").ranks(ranks).run();
+        let strong = || Run::new(SLIDING).set("layer.cells=[8,8]").set("friction.coefficient=5.0");
+        let outcome = strong().petsc("-snes_max_it 1").ranks(ranks).run();
         assert_eq!(outcome.code, 3, "{outcome:?}");
         outcome.assert_single_message(": no convergence in the step to t = ");
         assert!(outcome.stderr.contains("mpjr: scene.toml: phase \""), "{}", outcome.stderr);
@@ -233,10 +234,10 @@ fn no_convergence_keeps_what_was_accepted() {
         assert_eq!(results.text("status").unwrap(), "not converged");
         let (time, force) = (outcome.history("time"), outcome.history("normal_force"));
         assert!(time.len() > 5 && time.windows(2).all(|pair| pair[0] < pair[1]), "{time:?}");
-        assert!(force.windows(2).skip(1).all(|pair| pair[0] < pair[1]), "{force:?}");
+        assert!(force[..50].windows(2).skip(1).all(|pair| pair[0] < pair[1]), "{force:?}");
         assert_eq!(results.interface("time").unwrap().rows, results.interface("pressure").unwrap().rows);
         // Steps of a multiple of 0.2 s are planned ones, here taken in one iteration each.
-        let reference = Run::new(SLIDING).set("layer.cells=[32,16]").set("phase.slide.steps=1").done();
+        let reference = strong().set("phase.slide.steps=1").done();
         assert!((outcome.at(2.4, "normal_force") / reference.at(2.4, "normal_force") - 1.0).abs() < 1e-9);
     }
 }

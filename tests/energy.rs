@@ -85,12 +85,13 @@ fn assert_sound(ledger: &Ledger) {
     }
 }
 
-/// Issue 3: under 1 % of the work at the steps that the scenes in runs/ have, with one, two and three arms and none, over
-/// three decades of velocity. Found: 8e-5 with the exponential memory, 3e-3 with backward Euler.
+/// Far under 1 % of the work at the steps that the scenes in runs/ have, with one, two and three arms and none, over three
+/// decades of velocity. Found: 1.1e-4 with the exponential memory, at the end of 50 steps of approach (2.8e-5 of 100), 1.4e-5
+/// without arms and 3e-3 with backward Euler.
 #[test]
 fn runs_balance_at_their_steps() {
-    let cases = |name| [1e-3, 2.154e-2, 1.0].map(|velocity| (name, "exponential", velocity, 1e-4));
-    let mut all = vec![("elastic-instantaneous", "exponential", 2.154e-2, 1e-4)];
+    let cases = |name| [1e-3, 2.154e-2, 1.0].map(|velocity| (name, "exponential", velocity, 1.5e-4));
+    let mut all = vec![("elastic-instantaneous", "exponential", 2.154e-2, 4e-5)];
     for name in ["eva-one-arm", "eva-two-arms", "eva-three-arms"] {
         all.extend(cases(name));
         all.push((name, "backward_euler", 2.154e-2, 5e-3));
@@ -187,8 +188,9 @@ fn steady_hysteresis_is_what_the_arms_dissipate() {
             assert_sound(&ledger);
             let resisted = ledger.work_of(&ledger.hysteretic, per_period);
             let lost = Ledger::gain(ledger.term("viscoelastic_dissipation"), per_period);
-            // The indenter works with the change of the profile over each point, and that closes the balance.
-            assert!(Ledger::gain(ledger.term("imbalance"), per_period).abs() < 1e-5 * lost);
+            // A mean pressure times a change of height, and means of their product: apart by a square of the step.
+            let step = std::f64::consts::TAU / per_period as f64;
+            assert!((Ledger::gain(&ledger.work, per_period) / resisted - 1.0).abs() < step * step / 3.0);
             assert!(Ledger::gain(ledger.term("stored"), per_period).abs() < 1e-4 * lost);
             lost / resisted - 1.0
         };

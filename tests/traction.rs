@@ -69,6 +69,10 @@ impl<const D: usize> Face<D> {
         self.compliance.fixed_view::<D, D>(D * i, D * j) * self.sites[j].weight
     }
 
+    fn column(&self, j: usize, rows: &[usize]) -> Vec<SMatrix<f64, D, D>> {
+        rows.iter().map(|i| self.block(*i, j)).collect()
+    }
+
     fn moves(&self, tractions: &[SVector<f64, D>]) -> Vec<SVector<f64, D>> {
         let of = |i| tractions.iter().enumerate().map(|(j, t)| self.block(i, j) * t).sum();
         (0..tractions.len()).map(of).collect()
@@ -117,7 +121,7 @@ fn derivative<const D: usize>() {
         for ((plus, minus), exact) in shifted(step).iter().zip(shifted(-step)).zip(&exact) {
             assert!(((plus - minus) / (2.0 * step) - exact).norm() < 2e-7, "{laws:?}");
         }
-        let factor = Factor::new(points.clone(), &|i, j| face.block(i, j)).unwrap();
+        let factor = Factor::new(points.clone(), &|j, rows| face.column(j, rows)).unwrap();
         let solved = factor.solve(&dt, |t| Ok(face.moves(t))).unwrap();
         for (back, b) in product(&points, &solved, &face.moves(&solved)).iter().zip(&dt) {
             assert!((back - b).norm() < 1e-9, "{laws:?}");
@@ -141,7 +145,7 @@ fn solution<const D: usize>() {
                 site.moduli = Moduli { normal: rho, tangential: Some(1.3 * rho) };
             }
             let from = face.outcome(vec![SVector::zeros(); 9], laws);
-            let operator: Operator<'_, D> = (&|i, j| face.block(i, j), &|t| Ok(face.moves(t)));
+            let operator: Operator<'_, D> = (&|j, rows| face.column(j, rows), &|t| Ok(face.moves(t)));
             let end = settle(&face.sites, from, laws, operator, 60).unwrap();
             assert!(end.norm(&face.sites) <= end.noise(&face.sites), "{laws:?} {rho}: {:e}", end.norm(&face.sites));
             for ((site, answer), motion) in face.sites.iter().zip(&end.answers).zip(&end.motions) {

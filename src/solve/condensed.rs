@@ -173,28 +173,10 @@ impl<R: Response> Condensed<R> {
         (list.chunks_exact(State::<2>::NUMBERS).map(State::read).collect(), displacement)
     }
 
-    /// Within a phase the tractions go on as they did, or along with the indenter where that goes far in a step.
-    fn predict(&mut self, step: Step, u: &mut Vector) -> Result<()> {
-        let Some(last) = self.face.goes_on_from(step)? else { return Ok(()) };
-        let points = self.face.interface.points();
-        let way = self.face.placement(step)?.sliding_rate * step.dt;
-        let predicted: Vec<Vector2<f64>> = match points.carried(&self.accepted, way) {
-            Some(carried) => carried,
-            None => {
-                let share = step.dt / last;
-                self.accepted.iter().zip(&self.before).map(|(now, before)| now + (now - before) * share).collect()
-            }
-        };
-        // No tension.
-        let pressed =
-            predicted.iter().zip(points.all()).map(|(t, point)| t - point.normal * point.normal.dot(t).max(0.0));
-        write(u, pressed)
-    }
-
     /// Tractions near those that meet the laws, from others.
     fn start(&self, from: Outcome<2>) -> Result<Outcome<2>> {
         let Some((behind, stage)) = self.behind().zip(self.stage.as_ref()) else { return Ok(from) };
-        let operator: traction::Operator<'_, 2> = (&|i, j| behind.influence(i, j), &|t| behind.moves(t));
+        let operator: traction::Operator<'_, 2> = (&|j, rows| behind.influence(j, rows), &|t| behind.moves(t));
         traction::start(&stage.sites, from, self.laws(stage.step.dt), operator, self.tolerance)
     }
 
@@ -227,7 +209,8 @@ impl<R: Response> TransientProblem for Condensed<R> {
         let points = stage.trial.linearised(&stage.sites);
         let Some(behind) = self.behind() else { return Ok(()) };
         let Linear { factor, made_for, used, .. } = &self.linear;
-        let fourier = match 2 * self.face.interface.face().x.len() > LARGE_PERIODIC_FACE {
+        let points_are_nodes = !self.face.interface.points().share_nodes();
+        let fourier = match points_are_nodes && 2 * points.len() > LARGE_PERIODIC_FACE {
             true => Fourier::new(
                 behind.compliance,
                 behind.secant,
@@ -246,7 +229,7 @@ impl<R: Response> TransientProblem for Condensed<R> {
             return Ok(());
         }
         // A singular system has no factor; the solve then says so by what it returns.
-        let factor = Factor::new(points.clone(), &|i, j| behind.influence(i, j)).ok();
+        let factor = Factor::new(points.clone(), &|j, rows| behind.influence(j, rows)).ok();
         let made_for = Some((step, behind.secant));
         self.linear = Linear { points, factor, fourier: None, made_for, used: 0 };
         Ok(())
@@ -274,14 +257,22 @@ impl<R: Response> TransientProblem for Condensed<R> {
         write(x, solution.into_iter())
     }
 
+    /// Within a phase the tractions go on as they did, or along with the indenter where that goes far in a step.
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
-        self.predict(step, u)?;
-        if !self.face.interface.points().share_nodes() {
-            return Ok(());
-        }
-        self.enter(step)?;
-        let started = self.start(self.outcome(u)?)?;
-        write(u, started.tractions.into_iter())
+        let Some(last) = self.face.goes_on_from(step)? else { return Ok(()) };
+        let points = self.face.interface.points();
+        let way = self.face.placement(step)?.sliding_rate * step.dt;
+        let predicted: Vec<Vector2<f64>> = match points.carried(&self.accepted, way) {
+            Some(carried) => carried,
+            None => {
+                let share = step.dt / last;
+                self.accepted.iter().zip(&self.before).map(|(now, before)| now + (now - before) * share).collect()
+            }
+        };
+        // No tension.
+        let pressed =
+            predicted.iter().zip(points.all()).map(|(t, point)| t - point.normal * point.normal.dot(t).max(0.0));
+        write(u, pressed)
     }
 
     fn search(&mut self, step: Step, u: &mut Vector, decrement: &Vector, f: &mut Vector) -> Result<()> {
@@ -403,7 +394,7 @@ impl<R: Response> TransientProblem for Condensed<R> {
         self.response.prepare(step)?;
         if let Some(behind) = self.behind() {
             let points = snapshot.get("factor")?.chunks_exact(Linearised::<2>::NUMBERS).map(Linearised::read).collect();
-            let factor = Factor::new(points, &|i, j| behind.influence(i, j)).ok();
+            let factor = Factor::new(points, &|j, rows| behind.influence(j, rows)).ok();
             self.linear = Linear { factor, made_for: Some((step, secant)), used: used as usize, ..Linear::default() };
         }
         Ok(())

@@ -152,7 +152,7 @@ impl Monolithic {
             Ok(behind.moves(t)?.iter().zip(&at_rest).map(|(moved, free)| moved + free).collect())
         };
         let first = Outcome::new(&sites, tractions.clone(), moved(&tractions)?, laws);
-        let operator: traction::Operator<'_, 2> = (&|i, j| behind.influence(i, j), &|t| behind.moves(t));
+        let operator: traction::Operator<'_, 2> = (&|j, rows| behind.influence(j, rows), &|t| behind.moves(t));
         // To the last digits: what displacements make of the tractions is more than they are off.
         let outcome = traction::start(&sites, first, laws, operator, f64::EPSILON)?;
         let met = outcome.met(&sites);

@@ -55,17 +55,30 @@ impl Behind<'_> {
         (0..points.count()).map(|i| points.at(i, u)).collect()
     }
 
-    /// The motion of point i under a unit traction at j, m/Pa.
-    pub fn influence(&self, i: usize, j: usize) -> Matrix2<f64> {
+    /// The motion of the points `rows` under a unit traction at j, m/Pa.
+    pub fn influence(&self, j: usize, rows: &[usize]) -> Vec<Matrix2<f64>> {
         let points = self.interface.points();
         let weight = points.all()[j].weight / self.secant;
-        match (points.shares(i), points.shares(j)) {
-            ([(a, _)], [(b, _)]) => self.compliance.block(*a, *b) * weight,
-            (of_i, of_j) => {
-                let pairs = of_i.iter().flat_map(|a| of_j.iter().map(move |b| (a, b)));
-                pairs.map(|((a, na), (b, nb))| self.compliance.block(*a, *b) * (na * nb * weight)).sum()
-            }
-        }
+        // Of a node, and kept from one point to the next that shares it.
+        let at_node = |a: usize| -> Matrix2<f64> {
+            points.shares(j).iter().map(|(b, share)| self.compliance.block(a, *b) * (share * weight)).sum()
+        };
+        let mut last: [(usize, Matrix2<f64>); 2] = [(usize::MAX, Matrix2::zeros()); 2];
+        let mut of_point = |&i: &usize| match points.shares(i) {
+            [(only, _)] => at_node(*only),
+            several => several
+                .iter()
+                .zip(0..)
+                .map(|((a, share), slot): (_, usize)| {
+                    let slot = slot % 2;
+                    if last[slot].0 != *a {
+                        last[slot] = (*a, at_node(*a));
+                    }
+                    last[slot].1 * *share
+                })
+                .sum(),
+        };
+        rows.iter().map(&mut of_point).collect()
     }
 
     /// rho of a point: 1 over the geometric mean of what the body answers the point's own traction with and what it answers
@@ -74,7 +87,7 @@ impl Behind<'_> {
         /// Beside the larger one, a compliance that is none.
         const NONE: f64 = 1e-12;
         let point = &self.interface.points().all()[i];
-        let own = self.influence(i, i);
+        let own = self.influence(i, &[i])[0];
         let stiffest = self.compliance.smallest() * point.weight / self.secant;
         let normal = point.normal.dot(&(own * point.normal));
         let tangential = own.trace() - normal;

@@ -14,8 +14,8 @@ use super::linear::Linearised;
 use crate::error::Result;
 use crate::petsc::DenseLu;
 
-/// The compliance between two points, (i, j): the motion at i under a unit traction at j, m/Pa.
-pub type Influence<'a, const D: usize> = dyn Fn(usize, usize) -> SMatrix<f64, D, D> + 'a;
+/// The compliance between points, (j, rows): the motion at each of `rows` under a unit traction at j, m/Pa.
+pub type Influence<'a, const D: usize> = dyn Fn(usize, &[usize]) -> Vec<SMatrix<f64, D, D>> + 'a;
 
 /// A factor, with what it was made of.
 pub struct Factor<const D: usize> {
@@ -41,16 +41,20 @@ impl<const D: usize> Factor<D> {
         let unknowns = unknowns(&points);
         let order = unknowns.len();
         let mut matrix = vec![0.0; order * order];
+        let rows: Vec<_> = points.iter().map(Linearised::rows).collect();
+        let of_points: Vec<&[Unknown<D>]> = unknowns.chunk_by(|a, b| a.point == b.point).collect();
+        let in_rows: Vec<usize> = of_points.iter().map(|chunk| chunk[0].point).collect();
         let mut at_column = 0;
         // Unknowns of one point stand together.
-        for column in unknowns.chunk_by(|a, b| a.point == b.point) {
+        for column in &of_points {
             let j = column[0].point;
+            let influences = influence(j, &in_rows);
             let dragging = points[j].dragging();
             let mut at_row = 0;
-            for row in unknowns.chunk_by(|a, b| a.point == b.point) {
+            for (row, influence) in of_points.iter().zip(influences) {
                 let i = row[0].point;
-                let [moved, own] = points[i].rows();
-                let mut block = moved * influence(i, j) * dragging;
+                let [moved, own] = rows[i];
+                let mut block = moved * influence * dragging;
                 if i == j {
                     block += own;
                 }

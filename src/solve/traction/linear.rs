@@ -113,7 +113,8 @@ impl<const D: usize> Linearised<D> {
 
     /// Whether r is known without the others.
     pub fn slides(&self) -> bool {
-        self.grip.iter().zip(self.slack).all(|(grip, slack)| *grip == 0.0 && slack == 1.0)
+        // In the plane there is nothing across.
+        self.grip[..D - 1].iter().all(|grip| *grip == 0.0)
     }
 
     /// The matrix of `dragged`.

@@ -153,8 +153,12 @@ impl<const D: usize> Site<D> {
         let Met { slip, shear } = law.meet(at, reach, rho);
         let secant = if slip > 0.0 { shear.shear / slip } else { shear.by_slip };
         for (i, slope) in [shear.by_slip, secant].into_iter().enumerate() {
-            let [grip, slack] =
-                if slope.is_infinite() { [1.0, 0.0] } else { [slope / (slope + rho), rho / (slope + rho)] };
+            let [grip, slack] = match slope / (slope + rho) {
+                _ if slope.is_infinite() => [1.0, 0.0],
+                // Beside 1 that is nothing, and the shear is known without the others.
+                grip if grip < 0.25 * f64::EPSILON => [0.0, 1.0],
+                grip => [grip, rho / (slope + rho)],
+            };
             (answer.grip[i], answer.slack[i]) = (grip, slack);
         }
         answer.drag = shear.by_pressure;
