@@ -14,7 +14,7 @@
 /// The energy balance, J/m, cumulative from t = 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Energy {
-    /// Supplied by the indenter: integral of N dD + (Q + integral of p dh/dx) ds.
+    /// Supplied by the indenter: integral of p (dD - dh) + q.V dt over the face.
     pub external_work: f64,
     /// Stored in the springs of the layer.
     pub stored: f64,

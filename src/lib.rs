@@ -1,4 +1,22 @@
 //! Parallel transient viscoelastic contact with friction, by interface finite elements with embedded profiles (MPJR).
+//!
+//! Each layer uses those below it, and none above (docs/architecture.md has the picture and the way of a step through it,
+//! docs/equations.md where each equation lives):
+//!
+//! | | |
+//! |---|---|
+//! | [`cli`] | commands: arguments, exit codes, what is printed |
+//! | [`study`], [`verify`], [`warnings`], [`plot`] | what is advised, compared, doubted, drawn |
+//! | [`composition`], [`solution`] | the root: a scene becomes mesh, profile, laws, body and strategy; a scene solved in memory |
+//! | [`scene`] | keys and checks: plain typed data |
+//! | [`solve`] | the driver; the face solved for its tractions ([`solve::traction`]), what stands behind it, the monolithic strategy |
+//! | [`output`] | history, fields, XDMF, checkpoints |
+//! | [`interface`], [`bulk`] | points of the contact with their laws and states; forces of a body with memory |
+//! | [`energy`], [`snapshot`], [`loading`] | the balance; the state as lists; where the indenter is |
+//! | [`friction`], [`profile`], [`rheology`], [`element`], [`mesh`] | pure laws, numbers in and numbers out; cells |
+//! | [`expression`], [`table`], [`input`], [`checksum`] | formulas and files of numbers |
+//! | [`petsc`], [`parallel`], [`memory`], [`error`] | thin safe wrappers, the only `unsafe` code; one outcome for all ranks |
+//! | [`oracle`] | beside all this: closed forms and Fourier solutions that results are compared with |
 
 // All that is printed goes through cli::terminal, which survives a reader that goes away.
 #![deny(clippy::print_stdout, clippy::print_stderr)]

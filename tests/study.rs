@@ -89,7 +89,7 @@ fn the_cheapest_setting() {
     let told = output_of(study(&scene, 1, &steps).args(["--error", "0.2"]));
     let options: Vec<&str> = told.split_whitespace().collect();
     assert!(options.len() == 4 && options[0] == "--set" && told.lines().count() == 1, "{told}");
-    // As README has it: what is printed goes through a shell, which takes no quotes off.
+    // As docs/commands.md has it: what is printed goes through a shell, which takes no quotes off.
     let vary = steps.map(|word| format!("'{word}'")).join(" ");
     let line = format!("$MPJR run sliding.toml $($MPJR study sliding.toml {vary} --error 0.2) --out advised.h5");
     let mut shell = Command::new("sh");
@@ -152,15 +152,15 @@ fn a_study_that_is_stopped_keeps_its_ladders() {
     assert_eq!(rows(), 5);
 }
 
-/// A row of the README's table of presets: the steps, the error of N and Q, and that of the hysteretic force.
+/// A row of the table of presets in docs/scene.md: the steps, the error of N and Q, and that of the hysteretic force.
 fn published(preset: &str) -> [f64; 3] {
-    let readme = std::fs::read_to_string(common::directory("README.md")).unwrap();
-    let row = readme.lines().find(|line| line.starts_with(&format!("| `\"{preset}\"` |"))).unwrap();
+    let page = std::fs::read_to_string(common::directory("docs/scene.md")).unwrap();
+    let row = page.lines().find(|line| line.starts_with(&format!("| `\"{preset}\"` |"))).unwrap();
     let cells: Vec<&str> = row.split('|').map(str::trim).collect();
     [4, 5, 6].map(|column| cells[column].parse().unwrap())
 }
 
-/// The presets make the errors that the README tells, on the scene that it tells them of: against steps for a hundredth of
+/// The presets make the errors that docs/scene.md tells, on the scene that it tells them of: against steps for a hundredth of
 /// the tolerance of the last, which 12 000 equal steps confirm. No more than is told, but for its last digit, and no less
 /// than half of it.
 #[test]

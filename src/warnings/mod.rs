@@ -2,7 +2,7 @@
 //!
 //! Each warning is a function with its threshold; a new one is a function and a line in `BEFORE` or `AFTER`. They are
 //! about results that mean little although nothing stops the solver, and they estimate: what is as fine as it has to be
-//! gets none. README has the table of all thresholds.
+//! gets none. docs/warnings.md has the table of all thresholds.
 
 mod body;
 mod contact;
