@@ -1,13 +1,13 @@
 //! Parallel transient viscoelastic contact with friction, by interface finite elements with embedded profiles (MPJR).
 //!
-//! Each layer uses those below it, and none above (docs/architecture.md has the picture and the way of a step through it,
+//! A module uses those of its row and of the rows below, and none above (docs/architecture.md has the picture and the way of a step through it,
 //! docs/equations.md where each equation lives):
 //!
 //! | | |
 //! |---|---|
 //! | [`cli`] | commands: arguments, exit codes, what is printed |
-//! | [`study`], [`verify`], [`warnings`], [`plot`] | what is advised, compared, doubted, drawn |
-//! | [`composition`], [`solution`] | the root: a scene becomes mesh, profile, laws, body and strategy; a scene solved in memory |
+//! | [`study`], [`verify`], [`plot`], [`solution`], [`warnings`] | what is advised, compared, drawn; a scene solved in memory; what is doubtful |
+//! | [`composition`] | the root: a scene becomes mesh, profile, laws, body and strategy |
 //! | [`scene`] | keys and checks: plain typed data |
 //! | [`solve`] | the driver; the face solved for its tractions ([`solve::traction`]), what stands behind it, the monolithic strategy |
 //! | [`output`] | history, fields, XDMF, checkpoints |
@@ -15,8 +15,8 @@
 //! | [`energy`], [`snapshot`], [`loading`] | the balance; the state as lists; where the indenter is |
 //! | [`friction`], [`profile`], [`rheology`], [`element`], [`mesh`] | pure laws, numbers in and numbers out; cells |
 //! | [`expression`], [`table`], [`input`], [`checksum`] | formulas and files of numbers |
+//! | [`oracle`] | closed forms and Fourier solutions that results are compared with |
 //! | [`petsc`], [`parallel`], [`memory`], [`error`] | thin safe wrappers, the only `unsafe` code; one outcome for all ranks |
-//! | [`oracle`] | beside all this: closed forms and Fourier solutions that results are compared with |
 
 // All that is printed goes through cli::terminal, which survives a reader that goes away.
 #![deny(clippy::print_stdout, clippy::print_stderr)]

@@ -115,6 +115,53 @@ fn defines(source: &str, name: &str) -> bool {
     })
 }
 
+/// The table at the head of src/lib.rs has every module, and each uses none of a row above its own.
+#[test]
+fn layers_use_those_below() {
+    let map = text(&directory("src/lib.rs"));
+    let rows = map.lines().filter(|line| line.starts_with("//! | ["));
+    let first = |row: &str| row.split('|').nth(1).unwrap().split('`').skip(1).step_by(2).map(str::to_owned).collect();
+    let layers: Vec<Vec<String>> = rows.map(first).collect();
+    let layer = |module: &str| layers.iter().position(|row| row.iter().any(|other| other == module));
+    let mut upward = Vec::new();
+    for module in map.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';')) {
+        let mine = layer(module).unwrap_or_else(|| panic!("{module} is not in the table of src/lib.rs"));
+        for file in sources(&directory("src"), module) {
+            let source = text(&file);
+            let code = source.split("#[cfg(test)]").next().unwrap();
+            for used in code
+                .lines()
+                .filter(|line| !line.trim().starts_with("//"))
+                .flat_map(|line| line.split("crate::").skip(1))
+            {
+                let used = used.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap();
+                if layer(used).is_some_and(|other| other < mine) {
+                    upward.push(format!("{}: {used}", file.display()));
+                }
+            }
+        }
+    }
+    assert!(layers.len() > 8 && upward.is_empty(), "{upward:#?}");
+}
+
+/// The source files of a module, but for those of tests.
+fn sources(folder: &Path, module: &str) -> Vec<PathBuf> {
+    let mut found: Vec<PathBuf> =
+        [folder.join(format!("{module}.rs"))].into_iter().filter(|file| file.exists()).collect();
+    let mut folders = vec![folder.join(module)];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).into_iter().flatten() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if !path.file_stem().unwrap().to_str().unwrap().ends_with("tests") {
+                found.push(path);
+            }
+        }
+    }
+    found
+}
+
 /// A block of code, and what the comment above it says.
 struct Block {
     language: String,
