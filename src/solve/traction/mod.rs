@@ -12,7 +12,7 @@
 //!
 //! G is a traction, and zero exactly where the laws hold, whatever rho (Alart and Curnier, Comput. Methods Appl. Mech. Engrg. 92
 //! (1991) 353, with the laws' own softness). No penetration, alpha = infinity, and Coulomb's law itself are ordinary values:
-//! nothing stiff is left in G. Newton's method on it is [`linear`].
+//! nothing stiff is left in G. Newton's method on it is `linear`.
 
 mod behind;
 mod continuation;
