@@ -1,5 +1,5 @@
 //! The energy ledger: what the indenter supplies is stored, dissipated in the arms, dissipated by friction or in the
-//! penalty (DESIGN.md, "Energy"), whatever the strategy, the material rule and the number of ranks.
+//! penalty, whatever the strategy, the material rule and the number of ranks.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;

@@ -70,7 +70,7 @@ fn table_1_of_the_paper_to_every_printed_digit_but_one() {
     }
 }
 
-/// VERIFY: another sample count gives other digits.
+/// Another sample count gives other digits.
 #[test]
 fn a_hundred_samples_give_other_digits() {
     let law = Fractional::new(814.7 / 2.0, 0.226).unwrap();

@@ -1,5 +1,5 @@
 //! A run that is killed: its file opens at any moment and holds consistent rows, those of an undisturbed run, and no
-//! more than the last 2 s of them are lost (CONTRACT.md and issue 2, "Output").
+//! more than the last 2 s of them are lost.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;

@@ -1,4 +1,4 @@
-//! The file against CONTRACT.md: names, shapes, types, attributes, and what is refused.
+//! The file of results as it is documented: names, shapes, types, attributes, and what is refused.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;

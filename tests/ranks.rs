@@ -1,5 +1,5 @@
 //! The answer does not depend on how many ranks compute it, nor on the linear solver: histories, interface profiles and
-//! bulk fields on 1, 2, 3 and 4 ranks agree to 1e-8 of the largest value of each field (issue 2).
+//! bulk fields on 1, 2, 3 and 4 ranks agree to 1e-8 of the largest value of each field.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;

@@ -1,4 +1,4 @@
-//! The condensed strategy gives the history of the monolithic one (DESIGN.md, section 1: the same discrete solution) to
+//! The condensed strategy gives the history of the monolithic one (they solve the same discrete equations) to
 //! 1e-8 relative: for every material rule, side condition, memory, quadrature and friction law.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 

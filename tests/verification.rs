@@ -1,5 +1,5 @@
-//! The whole program against solutions found in other ways: the numbers of the project's list (VERIFY.md: Fourier space,
-//! 512 nodes), the oracle (Fourier space and closed forms, nothing shared with the finite elements), Westergaard.
+//! The whole program against solutions found in other ways: the numbers of an independent code (Fourier space, 512
+//! nodes), the oracle (Fourier space and closed forms, nothing shared with the finite elements), Westergaard.
 //!
 //! Layer of 1 m by 1 m unless said otherwise, wavelength 1 m, g_0 = 5e-4 m, one arm (0.579, 0.817 s), approach 2 g_0.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -41,8 +41,8 @@ fn transient(cells: usize, penalty: f64, memory: &str, refine: usize) -> [f64; 3
     [force(10.0, "normal_force"), force(15.0, "normal_force"), force(20.0, "tangential_force")]
 }
 
-/// VERIFY.md, "Transient, periodic layer", nu = 0, within 0.1 %. The fourth row's first number is printed there as
-/// 0.33682; the oracle gives 0.33668 (src/oracle/transient_tests.rs), and so do the finite elements: both memories
+/// The independent code's transient over a periodic layer, nu = 0, within 0.1 %. The fourth row's first number is printed
+/// there as 0.33682; the oracle gives 0.33668 (src/oracle/transient_tests.rs), and so do the finite elements: both memories
 /// converge to it as the steps shrink.
 #[test]
 fn transient_table() {
@@ -112,8 +112,8 @@ fn mean_of_last(outcome: &Outcome, rows: usize) -> [f64; 2] {
         .map(|column| outcome.history(column).iter().rev().take(rows).sum::<f64>() / rows as f64)
 }
 
-/// VERIFY.md, "Fully slipping steady state", at 128 x 128 cells: N_z and the hysteretic coefficient within 0.5 % of the
-/// table, which holds for a rigid contact (measured with 1e6 Pa/m: -0.13 %, -0.41 %), and much closer to the oracle at
+/// The independent code's fully slipping steady state, at 128 x 128 cells: N_z and the hysteretic coefficient within
+/// 0.5 % of the table, which holds for a rigid contact (measured with 1e6 Pa/m: -0.13 %, -0.41 %), and much closer to the oracle at
 /// this penalty (measured: N_z within 5e-6, the coefficient within 2.4e-4).
 #[test]
 fn steady_sliding_table() {
@@ -128,8 +128,8 @@ fn steady_sliding_table() {
     }
 }
 
-/// The limit of slow sliding, an elastic layer of the relaxed modulus, within 0.5 % of VERIFY.md's row at 128 x 128
-/// cells and a penalty of 1e8 Pa/m.
+/// The limit of slow sliding, an elastic layer of the relaxed modulus, within 0.5 % of the independent code's row at
+/// 128 x 128 cells and a penalty of 1e8 Pa/m.
 #[test]
 fn slow_sliding() {
     let slow = square(SLIDING, 128)
@@ -147,8 +147,8 @@ fn slow_sliding() {
 }
 
 /// Fast sliding with a penalty of 1e8 Pa/m. At 1 m/s the coefficient is the small remainder of two large ones (0.583e-4
-/// against 6.8e-4 at 0.1 m/s): within 0.5 % of VERIFY.md's row with 256 cells along the face and 64 graded rows
-/// (measured: N_z -0.05 %, coefficient -0.1 %; 0.6 % with 128). Toward the limit of infinite speed, which the oracle meets
+/// against 6.8e-4 at 0.1 m/s): within 0.5 % of the independent code's row with 256 cells along the face and 64 graded
+/// rows (measured: N_z -0.05 %, coefficient -0.1 %; 0.6 % with 128). Toward the limit of infinite speed, which the oracle meets
 /// (src/oracle/steady.rs), the coefficient comes as 1/v: at 10 m/s it is 16 % off the limit's -1.017e-4, and the program
 /// is held to the oracle there (measured: -0.9 %, -1.7 % with half the cells); N_z is within 0.5 % of the limit (measured:
 /// -0.05 %).
@@ -285,7 +285,7 @@ fn symmetric_scenes() {
 }
 
 /// Full contact: with D so large that the whole face touches, |integral of p h'| = (1/2) L k g_0^2 |Im 1/lambda(k)|,
-/// lambda = C_zz + i f C_xz + 1/alpha (VERIFY.md, "Bonded elastic layer"), and N_z = (D - g_0)/lambda(0).
+/// lambda = C_zz + i f C_xz + 1/alpha (a bonded elastic layer in Fourier space), and N_z = (D - g_0)/lambda(0).
 #[test]
 fn full_contact() {
     let deep = 8e-3;

@@ -1,4 +1,4 @@
-//! Results: the HDF5 file of CONTRACT and the XDMF file beside it.
+//! Results: the HDF5 file and the XDMF file beside it.
 //!
 //! # A file that is valid at every moment
 //!

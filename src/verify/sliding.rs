@@ -1,4 +1,4 @@
-//! Transient pressing and sliding over one relaxing arm: VERIFY's table.
+//! Transient pressing and sliding over one relaxing arm, beside a transient solution in Fourier space.
 
 use super::setting::{Phase, Setting, one_arm, tanh};
 use super::{Case, Row, resolution};

@@ -1,4 +1,5 @@
-//! Steady sliding over one relaxing arm: hysteretic friction in full contact, and the partial contact of VERIFY's table.
+//! Steady sliding over one relaxing arm: hysteretic friction in full contact, and partial contact beside a solution in
+//! Fourier space.
 
 use std::f64::consts::TAU;
 

@@ -1,4 +1,4 @@
-"""Checks result files against CONTRACT.md with h5py alone: python3 tests/python/h5py_contract.py FILE.h5 ..."""
+"""Checks result files against the results reference with h5py alone: python3 tests/python/h5py_contract.py FILE.h5 ..."""
 
 import sys
 

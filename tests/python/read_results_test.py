@@ -12,7 +12,7 @@ SCRIPT = Path(__file__).parents[2] / "runs" / "read_results.py"
 
 
 def case(path, arms, velocity, status="complete"):
-    """A result file with what the script reads, laid out as CONTRACT.md says."""
+    """A result file with what the script reads, laid out as the results reference says."""
     material = "shear_modulus = 500.0\n" + "".join(f"[[material.arms]]\nweight = 0.2\ntime = {i + 1}.0\n" for i in range(arms))
     phases = f"[[phase]]\nname = 'indent'\nduration = 10.0\n[[phase]]\nname = 'slide'\nduration = 40.0\nvelocity = {velocity}\n"
     time = np.linspace(0, 50, 51)
