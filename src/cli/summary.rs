@@ -202,6 +202,13 @@ pub fn outcome(scene: &Scene, done: &Done) -> String {
         duration(&linear),
         duration(&counts.output)
     );
+    if *ranks > 1 && !shares_work(scene) {
+        let _ = writeln!(
+            text,
+            "{:15}one rank would take no longer: without a sparse matrix, ranks have nothing to share",
+            ""
+        );
+    }
     let _ = writeln!(text, "{:<15}at most {:.2} GB a rank", "memory:", petsc::peak_memory() as f64 / 1e9);
     let _ = writeln!(text, "{:<15}{blas}", "BLAS:");
     text
@@ -248,7 +255,16 @@ fn strategy(scene: &Scene) -> String {
             "factorisation per step length, two interior solves per step, Newton on the nodes in contact",
         ],
     };
+    let mut lines = lines;
+    if !shares_work(scene) {
+        lines.push("one MPI rank: more have nothing to share");
+    }
     format!("{asked}{}", lines.join(&format!("\n{:15}", "")))
+}
+
+/// Whether several ranks have anything to share: without a sparse matrix they all do the work of the face.
+fn shares_work(scene: &Scene) -> bool {
+    scene.period().is_none() || matches!(composition::form(scene), Form::Monolithic)
 }
 
 /// A duration for people.

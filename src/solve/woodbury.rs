@@ -13,8 +13,9 @@
 
 use std::ops::Range;
 
+use mpi::collective::SystemOperation;
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::{Communicator, Root};
+use mpi::traits::{Communicator, CommunicatorCollectives};
 
 use super::face::ContactFace;
 use super::on_face::{Factor, SparseColumns};
@@ -159,6 +160,7 @@ impl Woodbury {
     fn complete(&mut self, needed: impl Fn(&Range<usize>) -> bool) -> Result<()> {
         let Some(base) = &mut self.base else { return Ok(()) };
         let all: Vec<i32> = self.ascending.iter().map(|&place| self.rows[place].0).collect();
+        let local: Vec<Option<usize>> = self.ascending.iter().map(|&place| self.rows[place].1).collect();
         // In whole blocks, always the same ones: then a column has the same digits whatever came before it.
         let order = base.known.len();
         for first in (0..order).step_by(BLOCK) {
@@ -167,9 +169,14 @@ impl Woodbury {
                 continue;
             }
             let columns: Vec<i32> = block.clone().map(|place| self.rows[place].0).collect();
-            let mut entries = base.factor.inverse_entries(&self.comm, &all, &columns)?;
-            entries.resize(order * block.len(), 0.0);
-            self.comm.process_at_rank(0).broadcast_into(&mut entries[..]);
+            let entries = if self.comm.size() == 1 {
+                base.factor.inverse_entries(&self.comm, &all, &columns)?
+            } else {
+                let own = base.factor.solved_entries(&self.comm, &local, &columns)?;
+                let mut entries = vec![0.0; own.len()];
+                self.comm.all_reduce_into(&own[..], &mut entries[..], SystemOperation::sum());
+                entries
+            };
             for (column, entries) in block.clone().zip(entries.chunks_exact(order)) {
                 if !self.held[column] {
                     base.compliance.set_column(column, &self.ascending, entries);
