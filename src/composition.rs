@@ -233,12 +233,14 @@ fn condensed<R: Response + 'static>(
     };
     // The tractions of the points, on rank 0.
     let points = if u.local_len() > 0 { interface.points().count() } else { 0 };
-    let tractions = Vector::new(comm, 2 * points)?;
+    let height = scene.is_loaded().then(|| body::height(&mesh));
+    let last = usize::from(height.is_some() && points > 0);
+    let tractions = Vector::new(comm, 2 * points + last)?;
     let mut tangent = Matrix::shell(comm, tractions.local_len())?;
     let settings = Settings { linear, max_newton: MAX_NEWTON, search: Search::Own };
     let integrator = Integrator::new(comm, settings, &mut tangent)?;
     let phases = phases(scene, clearance(scene, &mut interface)?);
-    let strategy = Box::new(Condensed::new(comm, interface, response, &u, scene.solver.tolerance)?);
+    let strategy = Box::new(Condensed::new(comm, interface, response, &u, (scene.solver.tolerance, height))?);
     Ok(Problem { strategy, tangent, u: tractions, phases, integrator, mesh })
 }
 
@@ -304,9 +306,17 @@ fn clearance(scene: &Scene, interface: &mut Interface) -> Result<f64> {
 
 /// The phases end to end, each from where the one before left the indenter, without their steps.
 pub fn course(scene: &Scene) -> Vec<Phase> {
-    let (mut start, mut approach, mut sliding) = (0.0, 0.0, 0.0);
+    let (mut start, mut approach, mut sliding, mut held) = (0.0, 0.0, 0.0, None);
     let mut list = Vec::with_capacity(scene.phases.len());
     for phase in &scene.phases {
+        let force = match (phase.normal_force, phase.approach) {
+            (Some(force), _) => Some([held.unwrap_or(0.0), force]),
+            (None, Some(_)) => None,
+            (None, None) => held.map(|force| [force, force]),
+        };
+        // Nobody knows where a force leaves the indenter, nor with what force an approach does.
+        let from_there = !list.is_empty() && (held.is_some() || force.is_some());
+        held = force.map(|[_, force]| force);
         let to = phase.approach.unwrap_or(approach);
         let motion = match phase.motion {
             scene::Motion::Velocity(v) => Motion::Velocity(v),
@@ -317,6 +327,8 @@ pub fn course(scene: &Scene) -> Vec<Phase> {
             start,
             duration: phase.duration,
             approach: [approach, to],
+            force,
+            from_there,
             sliding,
             motion,
             steps: Vec::new(),

@@ -17,6 +17,8 @@ pub struct Placement {
     pub dt: f64,
     /// Slip rates, m/s, that are too close to tell apart by displacements over the step.
     pub resolution: f64,
+    /// The normal force that is held at the end of the step, N/m; the approach is then what that takes.
+    pub force: Option<f64>,
 }
 
 /// Tangential motion of one phase, relative to where the phase found the indenter.
@@ -42,8 +44,12 @@ pub struct Phase {
     pub start: f64,
     /// s
     pub duration: f64,
-    /// Approach at its beginning and end, m.
+    /// Approach at its beginning and end, m; where a force is held, about what it is.
     pub approach: [f64; 2],
+    /// The normal force at its beginning and end, N/m, where that is held instead of the approach.
+    pub force: Option<[f64; 2]>,
+    /// Whether it begins with the approach and the force that there are: after a phase that held a force, or before one.
+    pub from_there: bool,
     /// Sliding at its beginning, m.
     pub sliding: f64,
     /// How it slides.
@@ -99,6 +105,17 @@ impl Adaptive {
 }
 
 impl Phase {
+    /// Begins it where the indenter is at `approach`, m, under `force`, N/m, if it is to begin there.
+    pub fn begin_at(&mut self, [approach, force]: [f64; 2]) {
+        if !self.from_there {
+            return;
+        }
+        self.approach[0] = approach;
+        if let Some(held) = &mut self.force {
+            (held[0], self.approach[1]) = (force, approach);
+        }
+    }
+
     /// When it ends, s.
     pub fn end(&self) -> f64 {
         self.start + self.duration
@@ -111,6 +128,7 @@ impl Phase {
         let fraction = (local / self.duration).min(1.0);
         let approach = from + (to - from) * fraction;
         let approach_rate = (to - from) / self.duration;
+        let force = self.force.map(|[from, to]| from + (to - from) * fraction);
         match self.motion {
             Motion::Velocity(v) => Placement {
                 approach,
@@ -119,6 +137,7 @@ impl Phase {
                 approach_rate,
                 dt,
                 resolution: 0.0,
+                force,
             },
             Motion::Sinusoid { amplitude, cycles } => {
                 let angular = 2.0 * PI * cycles / self.duration;
@@ -132,6 +151,7 @@ impl Phase {
                     approach_rate,
                     dt,
                     resolution: 0.0,
+                    force,
                 }
             }
         }
@@ -212,7 +232,19 @@ mod tests {
         let motion = Motion::Sinusoid { amplitude: 2e-4, cycles: 1.25 };
         let name = String::new();
         let (start, duration, approach) = (2.0, 3.0, [0.0, 1.0]);
-        let phase = Phase { name, start, duration, approach, sliding: 0.4, motion, steps: vec![], adaptive: None };
+        let (force, from_there) = (None, false);
+        let phase = Phase {
+            name,
+            start,
+            duration,
+            approach,
+            force,
+            from_there,
+            sliding: 0.4,
+            motion,
+            steps: vec![],
+            adaptive: None,
+        };
         let (t, dt) = (3.1, 0.05);
         let (now, before) = (phase.placement(t, dt), phase.placement(t - dt, dt));
         assert!((now.sliding_rate - (now.sliding - before.sliding) / dt).abs() < 1e-14);

@@ -372,6 +372,7 @@ impl Random {
             duration: self.positive(),
             stepping: self.of(&[Stepping::Steps(3), Stepping::Steps(1000), Stepping::Tolerance(1e-3)]),
             approach: self.of(&[None, Some(-1.0), Some(9e-5)]),
+            normal_force: None,
             motion: self.of(&[Motion::Velocity(0.0), velocity, tangential]),
         }
     }

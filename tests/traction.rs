@@ -80,7 +80,7 @@ impl<const D: usize> Face<D> {
 
     fn outcome(&self, tractions: Vec<SVector<f64, D>>, laws: Laws<'_>) -> Outcome<D> {
         let motions = self.moves(&tractions).iter().zip(&self.free).map(|(moved, free)| moved + free).collect();
-        Outcome::new(&self.sites, tractions, motions, laws)
+        Outcome::new(&self.sites, tractions, (motions, 0.0), laws)
     }
 }
 
@@ -94,7 +94,7 @@ fn all_laws(check: impl Fn(Laws<'_>)) {
     let exact = Coulomb { coefficient: 0.4 };
     let friction: [Option<&dyn Law>; 4] = [None, Some(&tanh), Some(&elastic), Some(&exact)];
     for penalty in [None, Some(2.0)] {
-        friction.iter().for_each(|&friction| check(Laws { penalty, friction, dt: 0.5, resolution: 0.0 }));
+        friction.iter().for_each(|&friction| check(Laws { penalty, friction, dt: 0.5, resolution: 0.0, load: None }));
     }
 }
 
@@ -164,7 +164,7 @@ fn solution<const D: usize>() {
 /// A point that is held along the face answers with what its law says of the slip, or takes any shear that Coulomb allows.
 fn a_held_point_has_the_shear_of_its_slip(_: &SimpleCommunicator, _: &Path) {
     let law = Coulomb { coefficient: 0.5 };
-    let laws = Laws { penalty: Some(4.0), friction: Some(&law), dt: 1.0, resolution: 0.0 };
+    let laws = Laws { penalty: Some(4.0), friction: Some(&law), dt: 1.0, resolution: 0.0, load: None };
     let site = |slip: f64| Site {
         normal: SVector::from([0.0, 1.0]),
         weight: 1.0,

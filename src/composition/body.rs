@@ -235,7 +235,7 @@ fn depth_allows(mesh: &Mesh, scene: &Scene, file: &Path) -> Result<()> {
 }
 
 /// From the lowest node to the highest of the contact face, m.
-fn height(mesh: &Mesh) -> f64 {
+pub(super) fn height(mesh: &Mesh) -> f64 {
     let low = mesh.nodes.iter().map(|node| node.y).fold(f64::INFINITY, f64::min);
     let face = mesh.face.unknown.iter().map(|&node| mesh.nodes[node as usize].y);
     face.fold(f64::NEG_INFINITY, f64::max) - low

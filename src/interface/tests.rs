@@ -18,7 +18,14 @@ fn with_law(quadrature: Quadrature, sides: Sides, friction: Box<dyn Law>) -> Int
 }
 
 fn placement() -> Placement {
-    Placement { approach: 0.012, sliding: 0.13, sliding_rate: 0.05, approach_rate: 0.02, dt: 0.1, resolution: 0.0 }
+    Placement {
+        approach: 0.012,
+        sliding: 0.13,
+        sliding_rate: 0.05,
+        approach_rate: 0.02,
+        dt: 0.1,
+        ..Placement::default()
+    }
 }
 
 /// A wavy surface, from rest.
@@ -142,8 +149,14 @@ fn assert_tangent(interface: &mut Interface, placement: Placement) {
 fn totals_integrate_the_tractions() {
     for quadrature in [Quadrature::Nodal, Quadrature::Gauss] {
         let mut interface = interface(quadrature, Sides::Periodic);
-        let place =
-            Placement { approach: 0.1, sliding: 0.0, sliding_rate: 1e3, approach_rate: 0.0, dt: 0.1, resolution: 0.0 };
+        let place = Placement {
+            approach: 0.1,
+            sliding: 0.0,
+            sliding_rate: 1e3,
+            approach_rate: 0.0,
+            dt: 0.1,
+            ..Placement::default()
+        };
         let totals = commit(&mut interface, place, &Surface::at_rest(8));
         // p = alpha (D - g0 (1 - cos)), whose mean is alpha (D - g0).
         assert!((totals.normal_force - 50.0 * 0.09).abs() < 1e-13);

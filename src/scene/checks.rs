@@ -23,6 +23,7 @@ pub(super) fn all(scene: &Scene, file: &Path) -> Result<()> {
         .and_then(|()| times(&scene.phases))
         .and_then(|()| adaptive(scene))
         .and_then(|()| exact_laws(scene))
+        .and_then(|()| load(scene))
         .and_then(|()| scene.phases.iter().try_for_each(|phase| approach(phase, scene)))
         .and_then(|()| moments(&scene.output.bulk_at, &scene.phases))
         .map_err(|(key, reason)| Error::scene(file, key, reason))
@@ -172,6 +173,19 @@ fn adaptive(scene: &Scene) -> Check {
     let first_order = |material: &Material| !material.is_elastic() && material.memory == Memory::BackwardEuler;
     if scene.materials.iter().any(first_order) {
         return fail(&key, "needs memory = \"exponential\" in the material; or give steps");
+    }
+    Ok(())
+}
+
+/// A force is held by the condensed strategy, in planned steps.
+fn load(scene: &Scene) -> Check {
+    let Some(phase) = scene.phases.iter().find(|phase| phase.normal_force.is_some()) else { return Ok(()) };
+    let key = format!("phase.{}.normal_force", phase.name);
+    if scene.solver.strategy == Strategy::Monolithic {
+        return fail(&key, "is not held by the strategy \"monolithic\" yet; use \"condensed\"");
+    }
+    if scene.is_adaptive() {
+        return fail(&key, "is not held in adaptive steps yet; give steps in all phases");
     }
     Ok(())
 }

@@ -272,6 +272,10 @@ pub struct Phase {
     /// Normal approach of the indenter at the end of the phase, m, linear in time; none = unchanged.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub approach: Option<f64>,
+    /// The normal force on the indenter at the end of the phase, N/m, at least 0, linear in time, instead of the approach; none =
+    /// as said by `approach`, or what the phase before controlled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub normal_force: Option<f64>,
     /// Tangential motion of the indenter.
     #[serde(flatten)]
     pub motion: Motion,

@@ -56,6 +56,11 @@ impl Scene {
         self.phases.iter().filter_map(|phase| phase.approach).fold(0.0, f64::max)
     }
 
+    /// Whether a force holds the indenter at any time.
+    pub fn is_loaded(&self) -> bool {
+        self.phases.iter().any(|phase| phase.normal_force.is_some())
+    }
+
     /// The same scene up to the end of its first `count` phases, without a title: what the state there depends on; none
     /// where the steps of these phases also depend on later ones.
     pub fn first_phases(&self, count: usize) -> Option<Self> {

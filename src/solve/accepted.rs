@@ -17,8 +17,11 @@ pub struct AcceptedFace {
     displacement: Vec<f64>,
     /// Over the last step, m/s.
     rate: Vec<f64>,
-    /// The length of the last step, s.
+    /// The end and the length of the last step, s.
+    time: f64,
     dt: f64,
+    /// The approach, m, and the normal force, N/m, where the phase began.
+    origin: [f64; 2],
     /// Only where the energy is asked for.
     exchange: Option<Exchange>,
 }
@@ -27,12 +30,22 @@ impl AcceptedFace {
     /// At rest.
     pub fn new(interface: Interface) -> Self {
         let at_rest = vec![0.0; 2 * interface.face().x.len()];
-        Self { interface, phase: None, rate: at_rest.clone(), displacement: at_rest, dt: 1.0, exchange: None }
+        let (rate, displacement) = (at_rest.clone(), at_rest);
+        Self { interface, phase: None, displacement, rate, time: 0.0, dt: 1.0, origin: [0.0; 2], exchange: None }
     }
 
     /// What the following steps are driven by.
-    pub fn begin(&mut self, phase: Phase) {
+    ///
+    /// # Errors
+    /// A domain error where the profile is not known.
+    pub fn begin(&mut self, mut phase: Phase) -> Result<()> {
+        // In the middle of a phase, of which a run goes on from a checkpoint, its origin was restored.
+        if self.time <= phase.start + 1e-9 * phase.duration {
+            self.origin = [self.interface.placement().approach, self.interface.totals()?.normal_force];
+        }
+        phase.begin_at(self.origin);
         self.phase = Some(phase);
+        Ok(())
     }
 
     /// Where the indenter is at the end of a step.
@@ -69,11 +82,16 @@ impl AcceptedFace {
     }
 
     /// Takes the accepted state to the end of a step.
-    pub fn commit(&mut self, placement: Placement, states: Vec<State<2>>, displacement: Vec<f64>) -> Result<()> {
+    pub fn commit(
+        &mut self,
+        (time, placement): (f64, Placement),
+        states: Vec<State<2>>,
+        displacement: Vec<f64>,
+    ) -> Result<()> {
         for ((rate, new), old) in self.rate.iter_mut().zip(&displacement).zip(&self.displacement) {
             *rate = (new - old) / placement.dt;
         }
-        (self.displacement, self.dt) = (displacement, placement.dt);
+        (self.displacement, self.time, self.dt) = (displacement, time, placement.dt);
         if let Some(exchange) = &mut self.exchange {
             exchange.advance(&mut self.interface, placement, &states)?;
         }
@@ -100,7 +118,7 @@ impl AcceptedFace {
     pub fn save(&self, snapshot: &mut Snapshot) {
         snapshot.put("face-displacement", self.displacement.clone());
         snapshot.put("face-rate", self.rate.clone());
-        snapshot.put("face-dt", vec![self.dt]);
+        snapshot.put("face-times", vec![self.time, self.dt, self.origin[0], self.origin[1]]);
         self.interface.save(snapshot);
         if let Some(exchange) = &self.exchange {
             exchange.save(snapshot);
@@ -111,7 +129,8 @@ impl AcceptedFace {
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
         snapshot.fill("face-displacement", &mut self.displacement)?;
         snapshot.fill("face-rate", &mut self.rate)?;
-        [self.dt] = snapshot.numbers("face-dt")?;
+        let [time, dt, approach, force] = snapshot.numbers("face-times")?;
+        (self.time, self.dt, self.origin) = (time, dt, [approach, force]);
         self.interface.restore(snapshot)?;
         self.exchange.as_mut().map_or(Ok(()), |exchange| exchange.restore(snapshot))
     }

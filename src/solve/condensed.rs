@@ -9,7 +9,7 @@ use nalgebra::Vector2;
 
 use super::accepted::AcceptedFace;
 use super::response::Response;
-use super::traction::{self, Answer, Behind, Factor, Fourier, Laws, Linearised, Outcome, Site};
+use super::traction::{self, Answer, Behind, Border, Factor, Fourier, Laws, Linearised, Outcome, Site};
 use super::{BulkFields, Contact, TransientProblem, Work};
 use crate::energy::Energy;
 use crate::error::{Error, Result};
@@ -51,6 +51,9 @@ pub struct Condensed<R> {
     reuse: bool,
     /// How often bulk fields were asked for.
     recoveries: usize,
+    /// From the lowest point of the body to the highest of its face, m, where a force may hold the indenter: its descent is
+    /// then the last unknown, on rank 0.
+    height: Option<f64>,
 }
 
 /// The points of the contact in one step.
@@ -71,6 +74,8 @@ struct Stage {
 #[derive(Default)]
 struct Linear {
     points: Vec<Linearised<2>>,
+    /// Where a force is held.
+    border: Option<Border<2>>,
     factor: Option<Factor<2>>,
     fourier: Option<Fourier>,
     /// The step that the factor was made for, and the secant.
@@ -86,7 +91,7 @@ impl<R: Response> Condensed<R> {
         interface: Interface,
         response: R,
         layout: &Vector,
-        tolerance: f64,
+        (tolerance, height): (f64, Option<f64>),
     ) -> Result<Self> {
         let components = 2 * interface.face().x.len();
         let indices: Vec<i32> = (0..components as i32).collect();
@@ -106,6 +111,7 @@ impl<R: Response> Condensed<R> {
             linear: Linear::default(),
             reuse: components > LARGE_FACE,
             recoveries: 0,
+            height,
         })
     }
 
@@ -115,10 +121,16 @@ impl<R: Response> Condensed<R> {
             return Ok(());
         }
         self.response.prepare(step)?;
-        let placement = self.face.placement(step)?;
+        let mut placement = self.face.placement(step)?;
+        if placement.force.is_some() {
+            // Where it is if it goes on as it did.
+            let Placement { approach, approach_rate, .. } = self.face.interface.placement();
+            placement.approach_rate = self.face.goes_on_from(step)?.map_or(0.0, |_| approach_rate);
+            placement.approach = approach + placement.approach_rate * step.dt;
+        }
         self.face.interface.place(placement)?;
         self.response.free(step, &mut self.free)?;
-        let trial = Outcome { tractions: Vec::new(), motions: Vec::new(), answers: Vec::new() };
+        let trial = Outcome::none();
         let sites = match self.behind() {
             Some(behind) => behind.sites(&self.face, placement, &self.free.view()?),
             None => Vec::new(),
@@ -133,8 +145,53 @@ impl<R: Response> Condensed<R> {
         self.response.compliance().map(|compliance| Behind { interface, compliance, secant })
     }
 
-    fn laws(&self, dt: f64) -> Laws<'_> {
-        Laws { penalty: self.face.interface.penalty(), friction: self.face.interface.friction(), dt, resolution: 0.0 }
+    /// kappa, Pa/m, and the last entry of a vector of the unknowns; of none where no force may hold the indenter.
+    fn last(&self, u: &Vector) -> Result<Option<(f64, f64)>> {
+        let Some(stage) = self.stage.as_ref().filter(|_| self.height.is_some()) else { return Ok(None) };
+        Ok(u.view()?.last().map(|last| (traction::modulus(&stage.sites), *last)))
+    }
+
+    /// Within a phase the tractions go on as they did, or along with the indenter where that goes far in a step.
+    fn predict(&self, step: Step, u: &mut Vector) -> Result<()> {
+        let Some(last) = self.face.goes_on_from(step)? else { return Ok(()) };
+        let points = self.face.interface.points();
+        let way = self.face.placement(step)?.sliding_rate * step.dt;
+        let predicted: Vec<Vector2<f64>> = match points.carried(&self.accepted, way) {
+            Some(carried) => carried,
+            None => {
+                let share = step.dt / last;
+                self.accepted.iter().zip(&self.before).map(|(now, before)| now + (now - before) * share).collect()
+            }
+        };
+        // No tension.
+        let pressed =
+            predicted.iter().zip(points.all()).map(|(t, point)| t - point.normal * point.normal.dot(t).max(0.0));
+        write(u, pressed)
+    }
+
+    /// How far the indenter has come down from its placement, m.
+    fn descent(&self, u: &Vector) -> Result<f64> {
+        Ok(self.last(u)?.map_or(0.0, |(modulus, last)| last / modulus))
+    }
+
+    /// Writes the last entry of a vector of the unknowns, where there is one.
+    fn write_last(&self, value: f64, u: &mut Vector) -> Result<()> {
+        let mut values = u.view_mut()?;
+        if let (Some(_), Some(last)) = (self.height, values.last_mut()) {
+            *last = value;
+        }
+        Ok(())
+    }
+
+    fn laws(&self, stage: &Stage) -> Laws<'_> {
+        let (dt, load) = (stage.step.dt, stage.placement.force);
+        Laws {
+            penalty: self.face.interface.penalty(),
+            friction: self.face.interface.friction(),
+            dt,
+            resolution: 0.0,
+            load,
+        }
     }
 
     /// The displacements of the nodes under tractions, m, and the forces, N/m; on rank 0.
@@ -149,14 +206,32 @@ impl<R: Response> Condensed<R> {
     /// The laws at the tractions of a vector.
     fn outcome(&self, u: &Vector) -> Result<Outcome<2>> {
         let Some((behind, stage)) = self.behind().zip(self.stage.as_ref()) else {
-            return Ok(Outcome { tractions: Vec::new(), motions: Vec::new(), answers: Vec::new() });
+            return Ok(Outcome::none());
         };
-        let tractions = tractions(u)?;
-        if tractions == stage.trial.tractions {
+        let (tractions, descent) = (tractions(u)?, self.descent(u)?);
+        if tractions == stage.trial.tractions && descent == stage.trial.descent {
             return Ok(stage.trial.clone());
         }
-        let motions = behind.at_points(&self.displaced(&tractions)?.0);
-        Ok(Outcome::new(&stage.sites, tractions, motions, self.laws(stage.step.dt)))
+        let rise = traction::up::<2>() * descent;
+        let motions =
+            behind.at_points(&self.displaced(&tractions)?.0).into_iter().map(|motion| motion + rise).collect();
+        Ok(Outcome::new(&stage.sites, tractions, (motions, descent), self.laws(stage)))
+    }
+
+    /// Where the indenter is at the end of a step, on every rank. Collective.
+    fn placed(&self, stage: &Stage, descent: f64) -> Result<Placement> {
+        let (Some(force), Some(height)) = (stage.placement.force, self.height) else { return Ok(stage.placement) };
+        let mut approach = stage.placement.approach + descent;
+        self.comm.process_at_rank(0).broadcast_into(&mut approach);
+        if approach >= height {
+            return Err(Error::Solver(format!(
+                "the force of {force:.6e} N/m presses the indenter by {approach:.3e} m into a body of {height:.3e} m at t = \
+                 {:.6e} s, which no contact carries; give a smaller force or a stiffer body",
+                stage.step.t
+            )));
+        }
+        let approach_rate = (approach - self.face.interface.placement().approach) / stage.step.dt;
+        Ok(Placement { approach, approach_rate, ..stage.placement })
     }
 
     /// Gives every rank the states and displacements of rank 0. Collective.
@@ -177,13 +252,20 @@ impl<R: Response> Condensed<R> {
     fn start(&self, from: Outcome<2>) -> Result<Outcome<2>> {
         let Some((behind, stage)) = self.behind().zip(self.stage.as_ref()) else { return Ok(from) };
         let operator: traction::Operator<'_, 2> = (&|j, rows| behind.influence(j, rows), &|t| behind.moves(t));
-        traction::start(&stage.sites, from, self.laws(stage.step.dt), operator, self.tolerance)
+        traction::start(&stage.sites, from, self.laws(stage), operator, self.tolerance)
     }
 
     /// Takes note of a state that was tried, and writes its residual.
     fn tried(&mut self, outcome: Outcome<2>, f: &mut Vector) -> Result<()> {
         write(f, outcome.answers.iter().map(|answer: &Answer<2>| answer.excess))?;
         self.face.interface.count_laws(outcome.in_contact());
+        // The force that is too much, over the area; where the place is given, the descent, which is then none.
+        let stage = self.stage.as_ref().ok_or_else(unprepared)?;
+        let last = match stage.placement.force {
+            Some(_) => outcome.unbalance / traction::area(&stage.sites).sqrt(),
+            None => outcome.descent * traction::modulus(&stage.sites),
+        };
+        self.write_last(last, f)?;
         let stage = self.stage.as_mut().ok_or_else(unprepared)?;
         let norm = outcome.norm(&stage.sites);
         stage.first.get_or_insert(norm);
@@ -193,9 +275,9 @@ impl<R: Response> Condensed<R> {
 }
 
 impl<R: Response> TransientProblem for Condensed<R> {
-    fn begin(&mut self, phase: Phase) {
-        self.face.begin(phase);
+    fn begin(&mut self, phase: Phase) -> Result<()> {
         self.stage = None;
+        self.face.begin(phase)
     }
 
     fn residual(&mut self, step: Step, u: &Vector, _rate: &Vector, f: &mut Vector) -> Result<()> {
@@ -208,6 +290,7 @@ impl<R: Response> TransientProblem for Condensed<R> {
         let stage = self.stage.as_ref().ok_or_else(unprepared)?;
         let points = stage.trial.linearised(&stage.sites);
         let Some(behind) = self.behind() else { return Ok(()) };
+        let border = stage.placement.force.map(|_| Border::new(&stage.sites, &points));
         let Linear { factor, made_for, used, .. } = &self.linear;
         let points_are_nodes = !self.face.interface.points().share_nodes();
         let fourier = match points_are_nodes && 2 * points.len() > LARGE_PERIODIC_FACE {
@@ -220,62 +303,79 @@ impl<R: Response> TransientProblem for Condensed<R> {
             false => None,
         };
         if fourier.is_some() {
-            self.linear = Linear { points, fourier, ..Linear::default() };
+            self.linear = Linear { points, border, fourier, ..Linear::default() };
             return Ok(());
         }
         let same = made_for.is_some_and(|(made, secant)| made.dt == step.dt && secant == behind.secant);
         if self.reuse && *used <= STALE_AFTER && same && factor.is_some() {
-            (self.linear.points, self.linear.used) = (points, 0);
+            (self.linear.points, self.linear.border, self.linear.used) = (points, border, 0);
             return Ok(());
         }
         // A singular system has no factor; the solve then says so by what it returns.
         let factor = Factor::new(points.clone(), &|j, rows| behind.influence(j, rows)).ok();
         let made_for = Some((step, behind.secant));
-        self.linear = Linear { points, factor, fourier: None, made_for, used: 0 };
+        self.linear = Linear { points, border, factor, fourier: None, made_for, used: 0 };
         Ok(())
     }
 
     fn multiply(&mut self, v: &Vector, product: &mut Vector) -> Result<()> {
-        let values = match self.behind() {
-            Some(behind) => {
-                let dt = tractions(v)?;
-                traction::product(&self.linear.points, &dt, &behind.moves(&dt)?)
-            }
-            None => Vec::new(),
+        let (Some(behind), Some(stage)) = (self.behind(), self.stage.as_ref()) else {
+            product.view_mut()?;
+            return Ok(());
         };
-        write(product, values.into_iter())
+        let dt = tractions(v)?;
+        let mut values = traction::product(&self.linear.points, &dt, &behind.moves(&dt)?);
+        let mut last = self.last(v)?.map_or(0.0, |(_, last)| last);
+        if let Some(border) = &self.linear.border {
+            last = border.product(&stage.sites, (&dt, last), &mut values);
+        }
+        write(product, values.into_iter())?;
+        self.write_last(last, product)
     }
 
     fn solve(&mut self, b: &Vector, x: &mut Vector) -> Result<()> {
         self.linear.used += 1;
-        let right = tractions(b)?;
-        let solution = match (&self.linear, self.behind()) {
-            (Linear { fourier: Some(fourier), points, .. }, Some(_)) => fourier.solve(points, &right)?,
-            (Linear { factor: Some(factor), .. }, Some(behind)) => factor.solve(&right, |t| behind.moves(t))?,
-            _ => vec![Vector2::repeat(f64::NAN); right.len()],
+        let (right, mut last) = (tractions(b)?, self.last(b)?.map_or(0.0, |(_, last)| last));
+        let inverse = |right: &[Vector2<f64>]| match (&self.linear, self.behind()) {
+            (Linear { fourier: Some(fourier), points, .. }, Some(_)) => fourier.solve(points, right),
+            (Linear { factor: Some(factor), .. }, Some(behind)) => factor.solve(right, |t| behind.moves(t)),
+            _ => Ok(vec![Vector2::repeat(f64::NAN); right.len()]),
         };
-        write(x, solution.into_iter())
-    }
-
-    /// Within a phase the tractions go on as they did, or along with the indenter where that goes far in a step.
-    fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
-        let Some(last) = self.face.goes_on_from(step)? else { return Ok(()) };
-        let points = self.face.interface.points();
-        let way = self.face.placement(step)?.sliding_rate * step.dt;
-        let predicted: Vec<Vector2<f64>> = match points.carried(&self.accepted, way) {
-            Some(carried) => carried,
-            None => {
-                let share = step.dt / last;
-                self.accepted.iter().zip(&self.before).map(|(now, before)| now + (now - before) * share).collect()
+        let solution = match (&self.linear.border, &self.stage) {
+            (Some(border), Some(stage)) => {
+                let solved = border.solve(&stage.sites, (&right, last), inverse)?;
+                let (solution, lowered) = solved.unwrap_or_else(|| {
+                    // Nothing touches: down to where something does.
+                    let down =
+                        traction::touch(&stage.sites, &stage.trial.motions, stage.placement.force.unwrap_or(0.0));
+                    (right, -down * border.modulus)
+                });
+                last = lowered;
+                solution
             }
+            _ => inverse(&right)?,
         };
-        // No tension.
-        let pressed =
-            predicted.iter().zip(points.all()).map(|(t, point)| t - point.normal * point.normal.dot(t).max(0.0));
-        write(u, pressed)
+        write(x, solution.into_iter())?;
+        self.write_last(last, x)
     }
 
-    fn search(&mut self, step: Step, u: &mut Vector, decrement: &Vector, f: &mut Vector) -> Result<()> {
+    fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
+        self.predict(step, u)?;
+        self.write_last(0.0, u)?;
+        let Some(force) = self.face.placement(step)?.force else { return Ok(()) };
+        // A force that nothing bears yet is brought to where something does.
+        self.enter(step)?;
+        let outcome = self.outcome(u)?;
+        let down = match (&self.stage, outcome.in_contact()) {
+            (Some(stage), 0) => {
+                traction::touch(&stage.sites, &outcome.motions, force) * traction::modulus(&stage.sites)
+            }
+            _ => 0.0,
+        };
+        self.write_last(down, u)
+    }
+
+    fn search(&mut self, _step: Step, u: &mut Vector, decrement: &Vector, f: &mut Vector) -> Result<()> {
         let stage = self.stage.as_mut().ok_or_else(unprepared)?;
         stage.newton += 1;
         let astray = stage.newton == PATIENCE && self.face.displacement().len() <= LARGE_FACE;
@@ -283,13 +383,21 @@ impl<R: Response> TransientProblem for Condensed<R> {
         let outcome = match self.behind() {
             Some(_) if astray => self.start(stage.trial.clone())?,
             Some(behind) => {
+                let lowered = self.descent(decrement)?;
                 let decrement = tractions(decrement)?;
-                let moved = behind.moves(&decrement)?;
-                traction::length(&stage.sites, &stage.trial, (&decrement, &moved), self.laws(step.dt)).0
+                let rise = traction::up::<2>() * lowered;
+                let moved: Vec<_> = behind.moves(&decrement)?.into_iter().map(|moved| moved + rise).collect();
+                let along = (&decrement[..], &moved[..], lowered);
+                // On the way down to a touch nothing says how far.
+                match stage.placement.force.is_some() && stage.trial.in_contact() == 0 {
+                    true => stage.trial.taken(&stage.sites, along, (1.0, self.laws(stage))),
+                    false => traction::length(&stage.sites, &stage.trial, along, self.laws(stage)).0,
+                }
             }
             None => stage.trial.clone(),
         };
         write(u, outcome.tractions.iter().copied())?;
+        self.write_last(outcome.descent * traction::modulus(&stage.sites), u)?;
         self.tried(outcome, f)
     }
 
@@ -330,17 +438,18 @@ impl<R: Response> TransientProblem for Condensed<R> {
         let outcome = self.outcome(u)?;
         let stage = self.stage.take().ok_or_else(unprepared)?;
         let met = outcome.met(&stage.sites);
-        let laws = self.laws(step.dt);
+        let laws = self.laws(&stage);
         let ends = stage.sites.iter().zip(&outcome.answers).zip(&outcome.motions).zip(self.face.interface.states());
         let states: Vec<State<2>> =
             ends.map(|(((site, answer), motion), before)| answer.state(site, motion, laws, before)).collect();
+        let placement = self.placed(&stage, outcome.descent)?;
         let (displacement, forces) = self.displaced(&met)?;
         self.scale = outcome.size(&stage.sites);
         write(u, met.iter().copied())?;
         self.before = std::mem::replace(&mut self.accepted, met);
         self.displacement.view_mut()?.copy_from_slice(&displacement);
         let (states, displacement) = self.share(states, displacement);
-        self.face.commit(stage.placement, states, displacement)?;
+        self.face.commit((step.t, placement), states, displacement)?;
         self.response.commit(step, &self.displacement, &forces)
     }
 

@@ -138,7 +138,7 @@ impl<'a> Driver<'a> {
         let Some(phase) = self.phases.get(self.phase) else { return Ok(()) };
         let Some(start) = Position::start_of(self.phases, self.phase) else { return Ok(()) };
         let first = self.attempt(self.dt.unwrap_or(start.dt));
-        self.problem.begin(phase.clone());
+        self.problem.begin(phase.clone())?;
         let begun = Instant::now();
         let outcome = integrator.solve(self, tangent, u, first);
         self.counts.total = begun.elapsed();
@@ -170,7 +170,7 @@ impl<'a> Driver<'a> {
     }
 
     /// The step after one that ended at `now` and was `dt` long, and was rejected before so many times.
-    fn next(&mut self, dt: f64, rejected: usize) -> Next {
+    fn next(&mut self, dt: f64, rejected: usize) -> Result<Next> {
         let (adaptive, target) = self.plan();
         let remaining = target.time - self.now;
         let (next, near) = match adaptive {
@@ -183,26 +183,26 @@ impl<'a> Driver<'a> {
         };
         if remaining > 1e-9 * near {
             let land = if adaptive.is_some() { adapt::landing } else { f64::min };
-            return Next::Step(self.attempt(land(next, remaining)));
+            return Ok(Next::Step(self.attempt(land(next, remaining))));
         }
         self.cuts = 0;
         self.now = target.time;
         self.target += 1;
         if let Some(target) = self.phases[self.phase].steps.get(self.target) {
             let dt = adaptive.map_or(target.dt, |_| adapt::landing(next, target.time - self.now));
-            return Next::Step(self.attempt(dt));
+            return Ok(Next::Step(self.attempt(dt)));
         }
-        match Position::start_of(self.phases, self.phase + 1) {
+        Ok(match Position::start_of(self.phases, self.phase + 1) {
             Some(start) => {
                 (self.phase, self.target, self.controller) = (start.phase, start.target, start.controller);
-                self.problem.begin(self.phases[self.phase].clone());
+                self.problem.begin(self.phases[self.phase].clone())?;
                 Next::Step(self.attempt(start.dt))
             }
             None => {
                 (self.phase, self.target) = (self.phase + 1, 0);
                 Next::Stop
             }
-        }
+        })
     }
 }
 
@@ -275,7 +275,7 @@ impl Implicit for Driver<'_> {
         let phase = self.phase;
         let (adaptive, target) = self.plan();
         self.now = accepted.step.t;
-        let next = self.next(accepted.step.dt, accepted.cuts);
+        let next = self.next(accepted.step.dt, accepted.cuts)?;
         let reached = self.now == target.time;
         let planned = reached || adaptive.is_some();
         self.counts.steps += 1;

@@ -123,7 +123,7 @@ impl ContactFace {
         self.try_state(step, u)?;
         let states = self.accepted.interface.displaced(self.placement, &self.trial)?;
         self.scale = self.contact_norm();
-        self.accepted.commit(self.placement, states, self.trial.end.clone())
+        self.accepted.commit((step.t, self.placement), states, self.trial.end.clone())
     }
 
     /// Adds the accepted state to a snapshot.

@@ -35,7 +35,7 @@ pub use response::{
 /// All ranks call each method together.
 pub trait TransientProblem {
     /// What the following steps are driven by.
-    fn begin(&mut self, phase: Phase);
+    fn begin(&mut self, phase: Phase) -> Result<()>;
     /// f = F(t, u, rate).
     fn residual(&mut self, step: Step, u: &Vector, rate: &Vector, f: &mut Vector) -> Result<()>;
     /// tangent = dF/du + (1/dt) dF/d(rate).

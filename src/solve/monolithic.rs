@@ -143,7 +143,8 @@ impl Monolithic {
         let behind = Behind { interface, compliance, secant };
         let sites = behind.sites(&self.face.accepted, placement, &free);
         let resolution = placement.resolution * step.dt;
-        let laws = Laws { penalty: interface.penalty(), friction: interface.friction(), dt: step.dt, resolution };
+        let laws =
+            Laws { penalty: interface.penalty(), friction: interface.friction(), dt: step.dt, resolution, load: None };
         let normals = interface.points().all().iter().map(|point| point.normal);
         let tractions: Vec<Vector2<f64>> =
             interface.states().iter().zip(normals).map(|(state, normal)| state.on_layer(&normal)).collect();
@@ -151,7 +152,7 @@ impl Monolithic {
         let moved = |t: &[Vector2<f64>]| -> Result<Vec<Vector2<f64>>> {
             Ok(behind.moves(t)?.iter().zip(&at_rest).map(|(moved, free)| moved + free).collect())
         };
-        let first = Outcome::new(&sites, tractions.clone(), moved(&tractions)?, laws);
+        let first = Outcome::new(&sites, tractions.clone(), (moved(&tractions)?, 0.0), laws);
         let operator: traction::Operator<'_, 2> = (&|j, rows| behind.influence(j, rows), &|t| behind.moves(t));
         // To the last digits: what displacements make of the tractions is more than they are off.
         let outcome = traction::start(&sites, first, laws, operator, f64::EPSILON)?;
@@ -206,8 +207,8 @@ impl RoundOff {
 }
 
 impl TransientProblem for Monolithic {
-    fn begin(&mut self, phase: Phase) {
-        self.face.accepted.begin(phase);
+    fn begin(&mut self, phase: Phase) -> Result<()> {
+        self.face.accepted.begin(phase)
     }
 
     fn residual(&mut self, step: Step, u: &Vector, rate: &Vector, f: &mut Vector) -> Result<()> {

@@ -49,15 +49,30 @@ fn name(section: &Section, index: usize, taken: &mut HashMap<String, usize>) -> 
 
 fn phase(section: &Section, name: String, preset: Option<Preset>) -> Result<Phase> {
     const APPROACH: Quantity = Quantity::any("a normal approach in m");
+    const FORCE: Quantity = Quantity { what: "a compressive force in N/m, at least 0", accepts: |force| force >= 0.0 };
 
     section.later(&[("temperature", super::NO_TEMPERATURE)])?;
-    section.only(&["name", "duration", "steps", "tolerance", "approach", "velocity", "distance", "tangential"])?;
+    section.only(&[
+        "name",
+        "duration",
+        "steps",
+        "tolerance",
+        "approach",
+        "normal_force",
+        "velocity",
+        "distance",
+        "tangential",
+    ])?;
     let motion = motion(section)?;
+    if section.has("approach") && section.has("normal_force") {
+        return Err(section.error("normal_force", "give approach or normal_force, not both"));
+    }
     Ok(Phase {
         name,
         duration: duration(section, motion)?,
         stepping: stepping(section, preset)?,
         approach: section.optional_number("approach", APPROACH)?,
+        normal_force: section.optional_number("normal_force", FORCE)?,
         motion,
     })
 }

@@ -20,7 +20,7 @@ const SOFTEST: f64 = 1e-1;
 const STIFFER: f64 = 10.0;
 const MOST_STAGES: i32 = 20;
 
-/// Tractions near where the laws hold, from others.
+/// Tractions near where the laws hold under an indenter that stays, from others.
 pub fn start<const D: usize>(
     sites: &[Site<D>],
     from: Outcome<D>,
@@ -28,6 +28,8 @@ pub fn start<const D: usize>(
     operator: Operator<'_, D>,
     tolerance: f64,
 ) -> Result<Outcome<D>> {
+    let laws = Laws { load: None, ..laws };
+    let from = Outcome::new(sites, from.tractions, (from.motions, from.descent), laws);
     let direct = settle(sites, from.clone(), laws, operator, DIRECT)?;
     if direct.norm(sites) <= tolerance * direct.size(sites).max(from.size(sites)) {
         return Ok(direct);
@@ -41,13 +43,13 @@ pub fn start<const D: usize>(
         let sharpest = laws.friction.map_or(1.0, |law| (law.sharpness(laws.dt) * stiffness / slip).min(1.0));
         let softened = laws.friction.map(|law| Softened { law, share: sharpest });
         let softer = Laws { penalty, friction: softened.as_ref().map(|law| law as &dyn Law), ..laws };
-        let answered = Outcome::new(sites, at.tractions, at.motions, softer);
+        let answered = Outcome::new(sites, at.tractions, (at.motions, at.descent), softer);
         at = settle(sites, answered, softer, operator, EACH)?;
         if penalty == laws.penalty && sharpest == 1.0 {
             break;
         }
     }
-    let at = Outcome::new(sites, at.tractions, at.motions, laws);
+    let at = Outcome::new(sites, at.tractions, (at.motions, at.descent), laws);
     Ok(if at.norm(sites) <= direct.norm(sites) { at } else { direct })
 }
 

@@ -19,6 +19,7 @@ mod continuation;
 mod dense;
 mod fourier;
 mod linear;
+mod load;
 mod search;
 
 use nalgebra::SVector;
@@ -32,7 +33,8 @@ pub use continuation::start;
 pub use dense::Factor;
 pub use fourier::Fourier;
 pub use linear::{Linearised, product};
-pub use search::{Operator, Outcome, length, settle};
+pub use load::{Border, modulus, touch, up};
+pub use search::{Operator, Outcome, area, length, normal_force, settle};
 
 /// A point of the contact during a step.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,6 +75,8 @@ pub struct Laws<'a> {
     pub dt: f64,
     /// See [`Circumstances::resolution`], m: 0 but where displacements are to say the same.
     pub resolution: f64,
+    /// The force that the indenter is held by, N or N/m; none = its place is given.
+    pub load: Option<f64>,
 }
 
 /// What the laws make of a traction and a motion at one point, with derivatives.

@@ -4,6 +4,7 @@ use nalgebra::SVector;
 
 use super::dense::{Factor, Influence};
 use super::linear::Linearised;
+use super::load::up;
 use super::{Answer, Laws, Site};
 use crate::error::Result;
 
@@ -17,29 +18,56 @@ const SUFFICIENT: f64 = 1e-4;
 pub struct Outcome<const D: usize> {
     /// t, Pa.
     pub tractions: Vec<SVector<f64, D>>,
-    /// M, m.
+    /// M relative to the indenter where it was thought to be, m.
     pub motions: Vec<SVector<f64, D>>,
+    /// How far the indenter has come down from there, m: part of each motion.
+    pub descent: f64,
+    /// The force that is too much, over the root of the area: beside G in the norm.
+    pub unbalance: f64,
     /// Of each point.
     pub answers: Vec<Answer<D>>,
 }
+
+/// What a Newton step takes off: dt, what that moves (C dt, with what the indenter is lowered by), and what it is lowered by, m.
+pub type Along<'a, const D: usize> = (&'a [SVector<f64, D>], &'a [SVector<f64, D>], f64);
 
 impl<const D: usize> Outcome<D> {
     /// Asks the laws.
     pub fn new(
         sites: &[Site<D>],
         tractions: Vec<SVector<f64, D>>,
-        motions: Vec<SVector<f64, D>>,
+        (motions, descent): (Vec<SVector<f64, D>>, f64),
         laws: Laws<'_>,
     ) -> Self {
+        let unbalance = laws.load.map_or(0.0, |load| (normal_force(sites, &tractions) - load) / area(sites).sqrt());
         let answers =
             sites.iter().zip(&tractions).zip(&motions).map(|((site, t), m)| site.answer(t, m, laws)).collect();
-        Self { tractions, motions, answers }
+        Self { tractions, motions, descent, unbalance, answers }
+    }
+
+    /// So much less of a step.
+    pub fn taken(
+        &self,
+        sites: &[Site<D>],
+        (decrement, moved, lowered): Along<'_, D>,
+        (lambda, laws): (f64, Laws<'_>),
+    ) -> Self {
+        let less = |values: &[SVector<f64, D>], by: &[SVector<f64, D>]| {
+            values.iter().zip(by).map(|(value, by)| value - by * lambda).collect::<Vec<_>>()
+        };
+        let motions = (less(&self.motions, moved), self.descent - lambda * lowered);
+        Self::new(sites, less(&self.tractions, decrement), motions, laws)
+    }
+
+    /// Of no points.
+    pub fn none() -> Self {
+        Self { tractions: Vec::new(), motions: Vec::new(), descent: 0.0, unbalance: 0.0, answers: Vec::new() }
     }
 
     /// The norm of G over the face, Pa m^((D-1)/2).
     pub fn norm(&self, sites: &[Site<D>]) -> f64 {
         let squares = sites.iter().zip(&self.answers).map(|(site, answer)| site.weight * answer.excess.norm_squared());
-        squares.sum::<f64>().sqrt()
+        (squares.sum::<f64>() + self.unbalance * self.unbalance).sqrt()
     }
 
     /// That of t.
@@ -70,21 +98,26 @@ impl<const D: usize> Outcome<D> {
     }
 }
 
+/// Length, or area, of the face.
+pub fn area<const D: usize>(sites: &[Site<D>]) -> f64 {
+    sites.iter().map(|site| site.weight).sum()
+}
+
+/// The force on the indenter, upward.
+pub fn normal_force<const D: usize>(sites: &[Site<D>], tractions: &[SVector<f64, D>]) -> f64 {
+    -sites.iter().zip(tractions).map(|(site, t)| site.weight * t.dot(&up())).sum::<f64>()
+}
+
 /// The face at t - lambda dt with the longest lambda of 1, 1/2, ... that leaves less of G, or else that which leaves the least;
-/// and lambda. `moved` is C dt, so that no length costs a product.
+/// and lambda. What a step moves is known, so that no length costs a product.
 pub fn length<const D: usize>(
     sites: &[Site<D>],
     from: &Outcome<D>,
-    (decrement, moved): (&[SVector<f64, D>], &[SVector<f64, D>]),
+    along: Along<'_, D>,
     laws: Laws<'_>,
 ) -> (Outcome<D>, f64) {
     let before = from.norm(sites);
-    let at = |lambda: f64| {
-        let less = |values: &[SVector<f64, D>], by: &[SVector<f64, D>]| {
-            values.iter().zip(by).map(|(value, by)| value - by * lambda).collect::<Vec<_>>()
-        };
-        Outcome::new(sites, less(&from.tractions, decrement), less(&from.motions, moved), laws)
-    };
+    let at = |lambda: f64| from.taken(sites, along, (lambda, laws));
     let mut best: Option<(Outcome<D>, f64, f64)> = None;
     let mut lambda = 1.0;
     for _ in 0..=MOST_HALVINGS {
@@ -105,7 +138,7 @@ pub fn length<const D: usize>(
 pub type Operator<'a, const D: usize> =
     (&'a Influence<'a, D>, &'a dyn Fn(&[SVector<f64, D>]) -> Result<Vec<SVector<f64, D>>>);
 
-/// Newton's method from given tractions to where the laws hold to round-off, or as near as `most` iterations come.
+/// Newton's method under an indenter that stays, from given tractions to where the laws hold to round-off, or as near as `most` iterations come.
 pub fn settle<const D: usize>(
     sites: &[Site<D>],
     mut at: Outcome<D>,
@@ -124,7 +157,7 @@ pub fn settle<const D: usize>(
             break;
         }
         let moved = moves(&decrement)?;
-        at = length(sites, &at, (&decrement, &moved), laws).0;
+        at = length(sites, &at, (&decrement, &moved, 0.0), laws).0;
     }
     Ok(at)
 }

@@ -1,0 +1,203 @@
+//! An indenter held by a force instead of an approach.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
+
+use common::program::Run;
+
+/// A layer of 1 m x 1 m, one arm of the paper's Table 1, nu = 0.3 constant, under a flat indenter.
+const FLAT: &str = r#"
+[layer]
+width = 1.0
+depth = 1.0
+cells = [16, 8]
+sides = "periodic"
+[material]
+shear_modulus = 568.498
+poisson_ratio = 0.3
+arms = [ { weight = 0.579, time = 0.817 } ]
+poisson_rule = "constant_ratio"
+[indenter]
+profile = "expression"
+formula = "0*x"
+[contact]
+penalty = 1e6
+[[phase]]
+name = "jump"
+duration = 1e-9
+steps = 1
+normal_force = 0.5
+[[phase]]
+name = "creep"
+duration = 5.0
+steps = 50
+"#;
+
+/// D = N (C0 j(t) + 1/alpha), C0 = H (1 - 2 nu)/(2 G (1 - nu)), j = (1 - mu_1 exp(-mu_0 t/tau))/mu_0 the creep of the layer: 2.51789e-4 m at
+/// once. After 5 s in 50, 100 steps backward Euler is off by 3.1e-3, 1.5e-3 of it and the exponential memory by 3.6e-5,
+/// 9.0e-6: of first and second order.
+#[test]
+fn a_layer_creeps_under_a_step_of_load() {
+    let compliance = 0.4 / (2.0 * 568.498 * 0.7);
+    let creep = |t: f64| (1.0 - 0.579 * (-0.421 * t / 0.817f64).exp()) / 0.421;
+    let exact = |t: f64| 0.5 * (compliance * creep(t) + 1e-6);
+    assert!((exact(0.0) - 2.51789e-4).abs() < 1e-9);
+    let apart = |memory: &str, steps: usize| {
+        let run =
+            Run::new(FLAT).set(format!("material.memory={memory}")).set(format!("phase.creep.steps={steps}")).done();
+        assert!((run.at(1e-9, "approach") / exact(0.0) - 1.0).abs() < 1e-8);
+        assert!(run.history("normal_force").iter().skip(1).all(|force| (force / 0.5 - 1.0).abs() < 1e-12));
+        run.last("approach") / exact(5.0) - 1.0
+    };
+    for (memory, [coarse, fine], order) in
+        [("backward_euler", [-3.1e-3, -1.5e-3], 1.0), ("exponential", [-3.6e-5, -9.0e-6], 2.0)]
+    {
+        let found = [apart(memory, 50), apart(memory, 100)];
+        println!("{memory}: {found:?}");
+        assert!((found[0] / coarse - 1.0).abs() < 0.05 && (found[1] / fine - 1.0).abs() < 0.05, "{memory}: {found:?}");
+        assert!(((found[0] / found[1]).log2() - order).abs() < 0.1, "{memory}: {found:?}");
+    }
+}
+
+/// A cosine under 0.5 N/m, frictionless, no penetration: by Lee and Radok over Westergaard's contact of a deep layer, s^2 =
+/// sin^2(pi a/L) = N j(t)/(L p*), D = C0 N j/L + g0 s^2 (1 - ln s^2), p* = pi E* g0/L: 5.089689e-4 and 9.732573e-4 m, 0.29195 and 0.46491
+/// of the face after 0 and 5 s; this layer is softer by 1.0e-4 and 7e-5.
+#[test]
+fn a_cosine_sinks_in_as_lee_and_radok_say() {
+    let scene = FLAT.replace("0*x", "5e-4*(1-cos(2*pi*x))").replace("penalty = 1e6", "");
+    let run = Run::new(&scene).set("layer.cells=[256,128]").set("phase.creep.steps=100").done();
+    for (t, approach, fraction) in
+        [(1e-9, 5.089689e-4 * (1.0 - 1.0e-4), 0.29195), (5.0, 9.732573e-4 * (1.0 - 7e-5), 0.46491)]
+    {
+        let found = [run.at(t, "approach"), run.at(t, "contact_fraction")];
+        println!("{t} s: {found:?}");
+        assert!(
+            (found[0] / approach - 1.0).abs() < 1e-4 && (found[1] - fraction).abs() < 2.0 / 256.0,
+            "{t} s: {found:?}"
+        );
+    }
+}
+
+/// Not yet in touch, pressed, slid, held by its approach, by a force again, let go and left alone.
+const HISTORY: &str = r#"
+[layer]
+width = 1.0
+depth = 1.0
+cells = [48, 24]
+sides = "periodic"
+[material]
+shear_modulus = 568.498
+poisson_ratio = 0.3
+arms = [ { weight = 0.579, time = 0.817 } ]
+poisson_rule = "constant_ratio"
+[indenter]
+profile = "expression"
+formula = "1e-3+5e-4*(1-cos(2*pi*x))"
+[contact]
+[friction]
+law = "coulomb"
+coefficient = 0.2
+[[phase]]
+name = "near"
+approach = 5e-4
+duration = 1.0
+steps = 2
+[[phase]]
+name = "load"
+duration = 2.0
+steps = 20
+normal_force = 0.5
+[[phase]]
+name = "slide"
+velocity = 0.02
+distance = 0.3
+steps = 60
+[[phase]]
+name = "sink"
+approach = 2.4e-3
+duration = 1.0
+steps = 10
+[[phase]]
+name = "back"
+normal_force = 0.2
+velocity = -0.02
+duration = 1.0
+steps = 20
+[[phase]]
+name = "off"
+normal_force = 0.0
+duration = 1.0
+steps = 10
+[[phase]]
+name = "rest"
+duration = 3.0
+steps = 10
+[solver]
+tolerance = 1e-11
+"#;
+
+fn history() -> Run {
+    Run::new(HISTORY)
+}
+
+/// Forces rise linearly from what there is, are held by phases that say nothing, and Coulomb's law holds in gross sliding; an
+/// approach goes on from where a force left the indenter; at no force it stops at the last touch. The energy balances.
+#[test]
+fn force_and_approach_take_turns() {
+    let run = history().done();
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+    assert!(near(run.at(2.0, "normal_force"), 0.25) && near(run.at(3.0, "normal_force"), 0.5));
+    let (time, force, approach) = (run.history("time"), run.history("normal_force"), run.history("approach"));
+    assert!(time.iter().zip(&force).filter(|(t, _)| (3.0..18.0).contains(*t)).all(|(_, force)| near(*force, 0.5)));
+    assert!(near(run.at(18.0, "tangential_force"), 0.1) && near(run.at(20.0, "tangential_force"), -0.04));
+    assert!(near(run.at(19.0, "approach"), 2.4e-3) && run.at(18.1, "approach") > run.at(18.0, "approach"));
+    let middle = 0.5 * (run.at(19.0, "normal_force") + 0.2);
+    assert!(near(run.at(19.5, "normal_force"), middle));
+    assert!(run.at(21.0, "normal_force") < 1e-12 && run.last("normal_force") < 1e-12);
+    assert!(approach.iter().all(|approach| (0.0..=2.4e-3 + 1e-15).contains(approach)));
+    let imbalance = run.last("energy/imbalance") / run.last("energy/external_work");
+    println!("imbalance {imbalance:.1e}");
+    assert!(imbalance.abs() < 1e-4, "{imbalance}");
+}
+
+/// The approach that a ramp of the load traced gives that load when it is replayed step by step; and 1 to 3 ranks agree.
+#[test]
+fn a_load_is_that_of_its_approach() {
+    let scene =
+        HISTORY.split("[[phase]]\nname = \"near\"").next().unwrap().to_owned() + "[solver]\ntolerance = 1e-11\n";
+    let loaded = Run::new(&(scene.clone() + "[[phase]]\nduration = 2.0\nsteps = 20\nnormal_force = 0.5\n")).done();
+    let approach = loaded.history("approach");
+    let steps = approach.iter().skip(1).map(|d| format!("[[phase]]\nduration = 0.1\nsteps = 1\napproach = {d:?}\n"));
+    let replayed = Run::new(&(scene + &steps.collect::<String>())).done();
+    for (a, b) in loaded.history("normal_force").iter().zip(replayed.history("normal_force")) {
+        assert!((a - b).abs() < 1e-9, "{a} {b}");
+    }
+    let alone = history().done();
+    for ranks in [2, 3] {
+        let together = history().ranks(ranks).done();
+        for column in ["approach", "normal_force", "tangential_force"] {
+            let pairs = alone.history(column).into_iter().zip(together.history(column));
+            assert!(pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-9), "{ranks} ranks: {column}");
+        }
+    }
+}
+
+/// A force that only a body thicker than this one could bear ends the run with code 3, and says so; tension, and a force beside an
+/// approach, are errors of the scene.
+#[test]
+fn a_load_that_no_contact_carries_is_refused() {
+    let outcome = Run::new(FLAT).set("phase.jump.normal_force=5e3").run();
+    assert_eq!(outcome.code, 3, "{outcome:?}");
+    assert!(outcome.stderr.contains("which no contact carries"), "{}", outcome.stderr);
+    for (set, message) in [
+        (
+            "phase.jump.normal_force=-1.0",
+            "phase.jump.normal_force: must be a compressive force in N/m, at least 0, got -1.0",
+        ),
+        ("phase.jump.approach=1e-3", "phase.jump.normal_force: give approach or normal_force, not both"),
+        ("solver.strategy=monolithic", "phase.jump.normal_force: is not held by the strategy \"monolithic\" yet"),
+    ] {
+        let outcome = Run::new(FLAT).set(set).run();
+        assert!(outcome.code == 2 && outcome.stderr.contains(message), "{set}: {}", outcome.stderr);
+    }
+}
