@@ -262,9 +262,10 @@ fn strategy(scene: &Scene) -> String {
     format!("{asked}{}", lines.join(&format!("\n{:15}", "")))
 }
 
-/// Whether several ranks have anything to share: without a sparse matrix they all do the work of the face.
+/// Whether several ranks have anything to share: the interior, where a sparse system or the output asks for it.
 fn shares_work(scene: &Scene) -> bool {
-    scene.period().is_none() || matches!(composition::form(scene), Form::Monolithic)
+    let inside = scene.period().is_none() || !scene.output.bulk_at.is_empty();
+    inside || matches!(composition::form(scene), Form::Monolithic)
 }
 
 /// A duration for people.
