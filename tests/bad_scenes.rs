@@ -1,4 +1,4 @@
-//! Every scene of `tests/scenes/bad/` is refused with exactly the message that it carries.
+//! Every scene of `tests/scenes/bad.toml` and `tests/scenes/bad/` is refused with exactly the message that it carries.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;
@@ -8,10 +8,10 @@ use mpjr::scene::{Source, read};
 
 #[test]
 fn each_bad_scene_gives_its_message() {
-    let scenes = common::bad_scenes();
+    let scenes = common::bad::bad_scenes();
     assert!(scenes.len() >= 50, "only {} scenes", scenes.len());
     let mut wrong = Vec::new();
-    for scene in &scenes {
+    for scene in scenes {
         let source = Source { file: scene.file.clone(), overrides: scene.overrides() };
         // What `mpjr check` does: the scene, then what it needs of other files.
         let checked = read(&scene.text, &source).and_then(|read| {

@@ -1,4 +1,4 @@
-//! The command line against CONTRACT.md, "Commands": exit codes 0, 2, 3, 4; one message, on standard error, once for
+//! The command line as it is documented: exit codes 0, 2, 3, 4; one message, on standard error, once for
 //! all ranks; nothing written where nothing should be; no panic and no library's stack trace.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -23,7 +23,7 @@ fn out(path: &str) -> Run {
 }
 
 /// Runs `command` on a scene that must be refused.
-fn refused(mut command: Command, scene: &common::BadScene) {
+fn refused(mut command: Command, scene: &common::bad::BadScene) {
     let directory = tempfile::tempdir().unwrap();
     let output = command.arg(&scene.file).args(&scene.args).current_dir(&directory).output().unwrap();
     let left = names(directory.path());
@@ -37,17 +37,17 @@ fn refused(mut command: Command, scene: &common::BadScene) {
 
 #[test]
 fn check_refuses_each_bad_scene() {
-    for scene in common::bad_scenes() {
+    for scene in common::bad::bad_scenes() {
         let mut command = Command::new(MPJR);
         command.arg("check");
-        refused(command, &scene);
+        refused(command, scene);
     }
 }
 
 /// `run` starts MPI before it reads the scene, which takes its time: every fifteenth scene.
 #[test]
 fn run_refuses_bad_scenes_on_one_rank() {
-    for scene in common::bad_scenes().iter().step_by(15) {
+    for scene in common::bad::bad_scenes().iter().step_by(15) {
         let mut command = Command::new(MPJR);
         command.arg("run");
         refused(command, scene);
@@ -58,7 +58,7 @@ fn run_refuses_bad_scenes_on_one_rank() {
 /// error, does not cut it off.
 #[test]
 fn bad_scenes_are_refused_once_under_mpirun() {
-    for (i, scene) in common::bad_scenes().iter().enumerate().skip(3).step_by(12) {
+    for (i, scene) in common::bad::bad_scenes().iter().enumerate().skip(3).step_by(12) {
         for (action, ranks) in [("check", 4), ("run", 2)] {
             if action == "check" || i % 24 == 3 {
                 let mut command = mpirun(ranks);
