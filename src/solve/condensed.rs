@@ -3,20 +3,24 @@
 //! TS's solution is the tractions, F(t, T, dT/dt) = G with neither rate nor shift: an equation whose history is kept when TS
 //! has accepted the step. The unknowns live on rank 0; the other ranks follow, and help when bulk fields are asked for.
 
+mod checkpoint;
+mod linear;
+
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
 use nalgebra::Vector2;
 
 use super::accepted::AcceptedFace;
 use super::response::Response;
-use super::traction::{self, Answer, Behind, Border, Factor, Fourier, Laws, Linearised, Outcome, Site};
+use super::traction::{self, Answer, Behind, Laws, Outcome, Site};
 use super::{BulkFields, Contact, TransientProblem, Work};
 use crate::energy::Energy;
 use crate::error::{Error, Result};
 use crate::interface::{Interface, State};
 use crate::loading::{Phase, Placement};
 use crate::petsc::{Gather, Matrix, Step, Vector, Verdict};
-use crate::snapshot::{NaturalOrder, Snapshot};
+use crate::snapshot::Snapshot;
+use linear::Linear;
 
 /// Faces with more components than this are solved by GMRES: of a periodic layer with a preconditioner by Fourier
 /// transforms, else with an older factor, so that a step costs the square of the components in contact and not the cube.
@@ -25,8 +29,6 @@ pub const LARGE_FACE: usize = 1200;
 pub const LARGE_PERIODIC_FACE: usize = 200;
 /// Newton steps after which a step that is not solved is begun anew, from softer laws.
 const PATIENCE: usize = 20;
-/// More applications of an old factor than this in one solve, and a new one is made.
-const STALE_AFTER: usize = 10;
 
 /// The contact problem on the face alone.
 pub struct Condensed<R> {
@@ -68,20 +70,6 @@ struct Stage {
     first: Option<f64>,
     /// Newton steps so far.
     newton: usize,
-}
-
-/// Newton's linear system.
-#[derive(Default)]
-struct Linear {
-    points: Vec<Linearised<2>>,
-    /// Where a force is held.
-    border: Option<Border<2>>,
-    factor: Option<Factor<2>>,
-    fourier: Option<Fourier>,
-    /// The step that the factor was made for, and the secant.
-    made_for: Option<(Step, f64)>,
-    /// Solves since the last tangent.
-    used: usize,
 }
 
 impl<R: Response> Condensed<R> {
@@ -287,76 +275,15 @@ impl<R: Response> TransientProblem for Condensed<R> {
     }
 
     fn tangent(&mut self, step: Step, _u: &Vector, _rate: &Vector, _tangent: &mut Matrix) -> Result<()> {
-        let stage = self.stage.as_ref().ok_or_else(unprepared)?;
-        let points = stage.trial.linearised(&stage.sites);
-        let Some(behind) = self.behind() else { return Ok(()) };
-        let border = stage.placement.force.map(|_| Border::new(&stage.sites, &points));
-        let Linear { factor, made_for, used, .. } = &self.linear;
-        let points_are_nodes = !self.face.interface.points().share_nodes();
-        let fourier = match points_are_nodes && 2 * points.len() > LARGE_PERIODIC_FACE {
-            true => Fourier::new(
-                behind.compliance,
-                behind.secant,
-                &points,
-                stage.sites.first().map_or(0.0, |site| site.weight),
-            ),
-            false => None,
-        };
-        if fourier.is_some() {
-            self.linear = Linear { points, border, fourier, ..Linear::default() };
-            return Ok(());
-        }
-        let same = made_for.is_some_and(|(made, secant)| made.dt == step.dt && secant == behind.secant);
-        if self.reuse && *used <= STALE_AFTER && same && factor.is_some() {
-            (self.linear.points, self.linear.border, self.linear.used) = (points, border, 0);
-            return Ok(());
-        }
-        // A singular system has no factor; the solve then says so by what it returns.
-        let factor = Factor::new(points.clone(), &|j, rows| behind.influence(j, rows)).ok();
-        let made_for = Some((step, behind.secant));
-        self.linear = Linear { points, border, factor, fourier: None, made_for, used: 0 };
-        Ok(())
+        self.linearise(step)
     }
 
     fn multiply(&mut self, v: &Vector, product: &mut Vector) -> Result<()> {
-        let (Some(behind), Some(stage)) = (self.behind(), self.stage.as_ref()) else {
-            product.view_mut()?;
-            return Ok(());
-        };
-        let dt = tractions(v)?;
-        let mut values = traction::product(&self.linear.points, &dt, &behind.moves(&dt)?);
-        let mut last = self.last(v)?.map_or(0.0, |(_, last)| last);
-        if let Some(border) = &self.linear.border {
-            last = border.product(&stage.sites, (&dt, last), &mut values);
-        }
-        write(product, values.into_iter())?;
-        self.write_last(last, product)
+        self.product(v, product)
     }
 
     fn solve(&mut self, b: &Vector, x: &mut Vector) -> Result<()> {
-        self.linear.used += 1;
-        let (right, mut last) = (tractions(b)?, self.last(b)?.map_or(0.0, |(_, last)| last));
-        let inverse = |right: &[Vector2<f64>]| match (&self.linear, self.behind()) {
-            (Linear { fourier: Some(fourier), points, .. }, Some(_)) => fourier.solve(points, right),
-            (Linear { factor: Some(factor), .. }, Some(behind)) => factor.solve(right, |t| behind.moves(t)),
-            _ => Ok(vec![Vector2::repeat(f64::NAN); right.len()]),
-        };
-        let solution = match (&self.linear.border, &self.stage) {
-            (Some(border), Some(stage)) => {
-                let solved = border.solve(&stage.sites, (&right, last), inverse)?;
-                let (solution, lowered) = solved.unwrap_or_else(|| {
-                    // Nothing touches: down to where something does.
-                    let down =
-                        traction::touch(&stage.sites, &stage.trial.motions, stage.placement.force.unwrap_or(0.0));
-                    (right, -down * border.modulus)
-                });
-                last = lowered;
-                solution
-            }
-            _ => inverse(&right)?,
-        };
-        write(x, solution.into_iter())?;
-        self.write_last(last, x)
+        self.solution(b, x)
     }
 
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
@@ -463,50 +390,11 @@ impl<R: Response> TransientProblem for Condensed<R> {
     }
 
     fn save(&mut self, _u: &Vector, snapshot: &mut Snapshot) -> Result<()> {
-        let flat = |list: &[Vector2<f64>]| list.iter().flat_map(|t| [t.x, t.y]).collect();
-        snapshot.put("tractions", flat(&self.accepted));
-        snapshot.put("tractions-before", flat(&self.before));
-        self.face.save(snapshot);
-        let mut order = NaturalOrder::on_first_rank(&self.displacement)?;
-        self.response.save(&mut order, snapshot)?;
-        let Linear { factor, made_for, used, .. } = &self.linear;
-        let (Step { t, dt }, secant) = made_for.unwrap_or((Step { t: 0.0, dt: 0.0 }, 0.0));
-        snapshot.put("condensed", vec![self.scale, t, dt, secant, *used as f64]);
-        if let Some(factor) = factor.as_ref().filter(|_| self.reuse) {
-            snapshot.put("factor", factor.points().iter().flat_map(Linearised::numbers).collect());
-        }
-        Ok(())
+        self.write_state(snapshot)
     }
 
     fn restore(&mut self, snapshot: &Snapshot, u: &mut Vector) -> Result<()> {
-        for (name, list) in [("tractions", &mut self.accepted), ("tractions-before", &mut self.before)] {
-            let mut flat = vec![0.0; 2 * list.len()];
-            if !flat.is_empty() {
-                snapshot.fill(name, &mut flat)?;
-            }
-            *list = flat.as_chunks().0.iter().map(|&[x, z]| Vector2::new(x, z)).collect();
-        }
-        write(u, self.accepted.iter().copied())?;
-        self.face.restore(snapshot)?;
-        let mut here = self.displacement.view_mut()?;
-        here.iter_mut().zip(self.face.displacement()).for_each(|(here, u)| *here = *u);
-        drop(here);
-        let order = NaturalOrder::on_first_rank(&self.displacement)?;
-        self.response.restore(&order, snapshot, &self.displacement)?;
-        let [scale, t, dt, secant, used] = snapshot.numbers("condensed")?;
-        (self.scale, self.stage, self.linear) = (scale, None, Linear::default());
-        if !self.reuse || !snapshot.has("factor") {
-            return Ok(());
-        }
-        // Its compliance is that of the step that it was made for.
-        let step = Step { t, dt };
-        self.response.prepare(step)?;
-        if let Some(behind) = self.behind() {
-            let points = snapshot.get("factor")?.chunks_exact(Linearised::<2>::NUMBERS).map(Linearised::read).collect();
-            let factor = Factor::new(points, &|j, rows| behind.influence(j, rows)).ok();
-            self.linear = Linear { factor, made_for: Some((step, secant)), used: used as usize, ..Linear::default() };
-        }
-        Ok(())
+        self.read_state(snapshot, u)
     }
 
     fn contact(&mut self) -> Result<Contact<'_>> {
