@@ -28,10 +28,11 @@ fn main() {
     common::mpi::main(CASES);
 }
 
-/// The layer of the presets on few cells, pressed, brought to slip and slid.
+/// A layer that creeps in the approach, on few cells, pressed, brought to slip and slid.
 fn layer(overrides: impl IntoIterator<Item = String>) -> Scene {
     let overrides = std::iter::once("layer.cells=[32,32]".to_owned()).chain(overrides).collect();
-    scene::read(include_str!("../runs/presets.toml"), &Source { file: "presets.toml".into(), overrides }).unwrap()
+    scene::read(include_str!("scenes/creeping-layer.toml"), &Source { file: "creeping-layer.toml".into(), overrides })
+        .unwrap()
 }
 
 /// In 3200 equal steps, unless the overrides say otherwise.
@@ -52,7 +53,7 @@ fn apart(coarse: &Solution, fine: &Solution) -> [f64; 3] {
     [normal, tangential, hysteretic]
 }
 
-/// The layer of the presets in 3200 equal steps, of which the onset of slip has 100: adaptive steps come to
+/// A layer that creeps in the approach in 3200 equal steps, of which the onset of slip has 100: adaptive steps come to
 /// a smaller error (the largest of those of N, Q and the hysteretic force) with less than a third of them, the rejected
 /// attempts counted. The
 /// reference resolves every moment (its tolerance is a fiftieth); that it is right, equal steps say, which come

@@ -164,9 +164,10 @@ fn a_tolerance_bounds_the_added_compliance() {
                 other => panic!("{other:?}"),
             };
             let layer = Layer { depth };
-            // After the shortest step.
+            // The mean over the shortest step.
             let material = &scene.materials[0];
-            let relaxed = material.shear_series().relaxation(shortest_step(&scene.phases));
+            let step = shortest_step(&scene.phases);
+            let relaxed = material.shear_series().integral(step) / step;
             let moduli = Moduli { shear: (material.shear_modulus * relaxed).into(), poisson: ratio.into() };
             // From no wave to the wave of two cells.
             let wave = |j: usize| std::f64::consts::PI * 32.0 * j as f64 / 3200.0;

@@ -12,7 +12,7 @@
 //!   C_zz(0) = depth (1 - 2 nu) / (2 G (1 - nu)),
 //!
 //! and which is the smaller one for a nearly incompressible layer. Relaxation makes the body softer: the moduli
-//! are those after the shortest step, because no step meets stiffer ones. Of several
+//! are the means over the shortest step, with which it answers what comes in it; no step meets stiffer ones. Of several
 //! strata, the shortest wave meets those that begin within its length of the face, and counts as if the stiffest of them
 //! were all there is; the mean pressure meets all of them in series. A mesh counts as a layer of its height, of the
 //! stiffest material that has a part of the face, with the shortest edge of the face for its cells.
@@ -53,8 +53,8 @@ fn compliance_of_layer(layer: &Layer, materials: &[Material], after: f64) -> f64
 fn smallest_compliance(cell: f64, strata: &[(f64, &Material)], after: f64) -> f64 {
     let (mut shortest, mut mean, mut above) = (f64::INFINITY, 0.0, 0.0);
     for (thickness, material) in strata {
-        let (g, nu) =
-            (material.shear_modulus * material.shear_series().relaxation(after), material.poisson().at(after));
+        let g = material.shear_modulus * (material.shear_series().integral(after) / after);
+        let nu = material.poisson().at(after);
         if above < 2.0 * cell {
             shortest = shortest.min((1.0 - nu) * cell / (std::f64::consts::PI * g));
         }
