@@ -53,7 +53,7 @@ fn random_scenes(world: &SimpleCommunicator, _: &Path) {
     random(world, &std::env::var("MPJR_EXTREMES_CHOICE").unwrap_or_default(), 120);
 }
 
-/// The same without penetration and with Coulomb's law itself; found: 99.6 % of 500.
+/// The same without penetration and with Coulomb's law itself; found: 99.2 % of 500.
 fn random_exact_scenes(world: &SimpleCommunicator, _: &Path) {
     random(world, "exact", 120);
 }

@@ -10,7 +10,7 @@ use nalgebra::SVector;
 use super::search::{Operator, Outcome, settle};
 use super::{Laws, Site};
 use crate::error::Result;
-use crate::friction::{Circumstances, Law, Shear};
+use crate::friction::{Circumstances, ElasticSlip, Law, Shear};
 
 /// Iterations from where the contact was, before laws are softened, and of each softer law.
 const DIRECT: usize = 20;
@@ -19,6 +19,8 @@ const EACH: usize = 25;
 const SOFTEST: f64 = 1e-1;
 const STIFFER: f64 = 10.0;
 const MOST_STAGES: i32 = 20;
+/// Beyond this nothing is left to be softened of laws that are exact.
+const NEARLY_EXACT: f64 = 1e9;
 
 /// Tractions near where the laws hold under an indenter that stays, from others.
 pub fn start<const D: usize>(
@@ -39,18 +41,28 @@ pub fn start<const D: usize>(
     let mut at = from;
     for stage in 0..MOST_STAGES {
         let stiffness = SOFTEST * STIFFER.powi(stage);
-        let penalty = laws.penalty.map(|penalty| penalty.min(stiffness * rho));
-        let sharpest = laws.friction.map_or(1.0, |law| (law.sharpness(laws.dt) * stiffness / slip).min(1.0));
-        let softened = laws.friction.map(|law| Softened { law, share: sharpest });
-        let softer = Laws { penalty, friction: softened.as_ref().map(|law| law as &dyn Law), ..laws };
+        let soft = stiffness * rho;
+        let penalty = laws.penalty.map_or(soft, |penalty| penalty.min(soft));
+        let softened = laws.friction.map(|law| softer(law, laws.dt, (slip, stiffness)));
+        let softer = Laws { penalty: Some(penalty), friction: softened.as_deref(), ..laws };
         let answered = Outcome::new(sites, at.tractions, (at.motions, at.descent), softer);
         at = settle(sites, answered, softer, operator, EACH)?;
-        if penalty == laws.penalty && sharpest == 1.0 {
+        let sharp = laws.friction.is_none_or(|law| law.sharpness(laws.dt) * stiffness >= slip);
+        if laws.penalty == Some(penalty) && sharp || stiffness > NEARLY_EXACT {
             break;
         }
     }
     let at = Outcome::new(sites, at.tractions, (at.motions, at.descent), laws);
+    let at = settle(sites, at, laws, operator, EACH)?;
     Ok(if at.norm(sites) <= direct.norm(sites) { at } else { direct })
+}
+
+/// The law with a shear that turns over a slip no shorter than `slip`, m, over a stiffness.
+fn softer(law: &dyn Law, dt: f64, (slip, stiffness): (f64, f64)) -> Box<dyn Law + '_> {
+    match law.sharpness(dt) {
+        0.0 => Box::new(ElasticSlip { coefficient: law.coefficient(), elastic_slip: slip / stiffness }),
+        sharpness => Box::new(Softened { law, share: (sharpness * stiffness / slip).min(1.0) }),
+    }
 }
 
 /// A law whose shear turns over a slip that is longer by 1/share.
