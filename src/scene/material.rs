@@ -39,8 +39,7 @@ impl Scene {
 /// From the shortest step to the end of the history, s, and at least a decade; none where these are no times.
 pub(super) fn band(phases: &[Phase]) -> Option<Band> {
     let end: f64 = phases.iter().map(|phase| phase.duration).sum();
-    let step = phases.iter().map(|phase| phase.duration / phase.expected_steps() as f64).fold(f64::INFINITY, f64::min);
-    Band::new(step.min(end / 10.0), end).ok()
+    Band::new(super::shortest_step(phases).min(end / 10.0), end).ok()
 }
 
 /// The ramps of the approach and of the sliding, and when their forces are looked at.

@@ -184,11 +184,10 @@ impl<R: Response> Condensed<R> {
 
     /// The displacements of the nodes under tractions, m, and the forces, N/m; on rank 0.
     fn displaced(&self, tractions: &[Vector2<f64>]) -> Result<(Vec<f64>, Vec<f64>)> {
-        let Some(behind) = self.behind() else { return Ok((Vec::new(), Vec::new())) };
-        let forces = behind.forces(tractions);
-        let mut u = behind.displacements(&forces)?;
-        u.iter_mut().zip(self.free.view()?.iter()).for_each(|(u, free)| *u += free);
-        Ok((u, forces))
+        match self.behind() {
+            Some(behind) => behind.displaced(tractions, &self.free.view()?),
+            None => Ok((Vec::new(), Vec::new())),
+        }
     }
 
     /// The laws at the tractions of a vector.

@@ -156,10 +156,7 @@ impl Monolithic {
         let operator: traction::Operator<'_, 2> = (&|j, rows| behind.influence(j, rows), &|t| behind.moves(t));
         // To the last digits: what displacements make of the tractions is more than they are off.
         let outcome = traction::start(&sites, first, laws, operator, f64::EPSILON)?;
-        let met = outcome.met(&sites);
-        let forces = behind.forces(&met);
-        let mut displacements = behind.displacements(&forces)?;
-        displacements.iter_mut().zip(&free).for_each(|(u, free)| *u += free);
+        let (mut displacements, forces) = behind.displaced(&outcome.met(&sites), &free)?;
         if let Some(penalty) = interface.penalty() {
             for (i, (site, answer)) in sites.iter().zip(&outcome.answers).enumerate().filter(|(_, (_, a))| a.active) {
                 if let [(node, _)] = interface.points().shares(i) {

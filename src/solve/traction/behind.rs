@@ -44,6 +44,14 @@ impl Behind<'_> {
         Ok(u)
     }
 
+    /// The displacements of the nodes under tractions, from what they do without, m, and the forces, N/m.
+    pub fn displaced(&self, tractions: &[Vector2<f64>], free: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
+        let forces = self.forces(tractions);
+        let mut u = self.displacements(&forces)?;
+        u.iter_mut().zip(free).for_each(|(u, free)| *u += free);
+        Ok((u, forces))
+    }
+
     /// The motion of the points under tractions, m.
     pub fn moves(&self, tractions: &[Vector2<f64>]) -> Result<Vec<Vector2<f64>>> {
         Ok(self.at_points(&self.displacements(&self.forces(tractions))?))
