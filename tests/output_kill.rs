@@ -55,11 +55,11 @@ fn write_without_end(kind: &str, path: &Path) {
 fn write_frames(path: &Path) {
     let universe = mpi::initialize().unwrap();
     let plan = sample::plan(4, 2);
-    let nodes: Vec<usize> = (0..plan.bulk.as_ref().unwrap().coordinates.len()).collect();
+    let nodes: Vec<usize> = (0..plan.bulk.as_ref().unwrap().coordinates.len() / 2).collect();
     let recorder = Recorder::create(path, &sample::metadata(), plan, &HistoryRow::default()).unwrap();
     for frame in 0..10_000 {
         let value = frame as f64;
-        let (displacement, stress) = (vec![[value; 2]; nodes.len()], vec![[value; 4]; nodes.len()]);
+        let (displacement, stress) = (vec![value; 2 * nodes.len()], vec![value; 4 * nodes.len()]);
         let frame = Frame { time: value, nodes: &nodes, displacement: &displacement, stress: &stress };
         bulk::write(&universe.world(), Some(&recorder), &frame).unwrap();
         tick();

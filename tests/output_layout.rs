@@ -8,7 +8,7 @@ use std::path::Path;
 use common::sample::{self, FACE};
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor, VarLenUnicode};
 use mpjr::error::Error;
-use mpjr::output::{HistoryRow, Recorder, Status, reader::Results};
+use mpjr::output::{HistoryRow, Plan, Recorder, Status, reader::Results};
 
 fn record(path: &Path, planned: usize, rows: usize) {
     let recorder =
@@ -120,7 +120,13 @@ fn layout_is_that_of_the_contract() {
         expected.push((format!("/interface/{name}"), vec![4, FACE], float.clone(), units));
     }
     expected.push(("/bulk/coordinates".into(), vec![35, 2], float.clone(), "m"));
-    expected.push(("/bulk/cells".into(), vec![24, 4], integer, "1"));
+    expected.push(("/bulk/cells".into(), vec![24, 4], integer.clone(), "1"));
+    for (name, length) in [("node", 35), ("cell", 24), ("corner", 4)] {
+        expected.push((format!("/bulk/{name}"), vec![length], integer.clone(), "1"));
+    }
+    for (name, length) in [("axis", 2), ("component", 4)] {
+        expected.push((format!("/bulk/{name}"), vec![length], TypeDescriptor::VarLenUnicode, "1"));
+    }
     expected.push(("/bulk/time".into(), vec![0], float.clone(), "s"));
     expected.push(("/bulk/displacement".into(), vec![0, 35, 2], float.clone(), "m"));
     expected.push(("/bulk/stress".into(), vec![0, 35, 4], float, "Pa"));
@@ -146,6 +152,47 @@ fn layout_is_that_of_the_contract() {
     let components = file.dataset("bulk/stress").unwrap().attr("components").unwrap();
     let components = components.read_raw::<VarLenUnicode>().unwrap();
     assert_eq!(components.iter().map(|name| name.as_str()).collect::<Vec<_>>(), ["xx", "zz", "yy", "xz"]);
+}
+
+/// A packed file has the rows, the attributes and the shapes of the file that it replaces; its fields are compressed, and
+/// take less than half the room: each is the number of the node and a constant of the row.
+#[test]
+fn a_packed_file_has_the_same_content() {
+    const WIDE: usize = 20_000;
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("run.h5");
+    // Compression may take 5 % of a run; this one claims to have begun a minute ago.
+    let started = std::time::SystemTime::now() - std::time::Duration::from_secs(60);
+    let metadata = mpjr::output::Metadata { started, ..sample::metadata() };
+    let plan = Plan { interface_x: (0..WIDE).map(|node| node as f64).collect(), ..sample::plan(20, 1) };
+    let recorder = Recorder::create(&path, &metadata, plan, &HistoryRow::default()).unwrap();
+    for i in 1..10 {
+        recorder.history(sample::row(i)).unwrap();
+        recorder.interface(sample::frame(i, WIDE)).unwrap();
+    }
+    recorder.finish_packed().unwrap();
+
+    let results = Results::open(&path).unwrap();
+    let file = hdf5::File::open(&path).unwrap();
+    assert_eq!(string(&file, "status"), "complete");
+    assert_eq!(string(&file, "scene"), metadata.scene);
+    assert_eq!(results.phase_names().unwrap(), ["indent", "slide"]);
+    for (name, factor) in sample::COLUMNS {
+        assert_eq!(results.history(name).unwrap(), (0..10).map(|i| factor * i as f64).collect::<Vec<_>>(), "{name}");
+    }
+    for (f, name) in sample::FIELDS.iter().enumerate() {
+        let field = results.interface(name).unwrap();
+        assert_eq!((field.rows, field.columns), (9, WIDE), "{name}");
+        for row in 0..9 {
+            let expected = (0..WIDE).map(|node| (1000 * (f + 1) * (row + 1) + node) as f64);
+            assert!(expected.eq(field.row(row).iter().copied()), "{name}, row {row}");
+        }
+        let set = file.dataset(&format!("interface/{name}")).unwrap();
+        assert_eq!(set.filters().len(), 2, "shuffle and deflate");
+        assert!(set.storage_size() < (9 * WIDE * 8 / 2) as u64, "{name}: {} bytes", set.storage_size());
+    }
+    assert_eq!(file.dataset("bulk/stress").unwrap().shape(), [0, 35, 4]);
+    assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1);
 }
 
 #[test]

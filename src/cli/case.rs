@@ -120,7 +120,7 @@ pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<
             warnings.extend(after);
         });
     }
-    let (finished, last) = recording.finish(status);
+    let (finished, last) = recording.finish(status, !job.keep_state);
     // What the solver says comes first; a file that could not be closed matters only when it did its work.
     let result = result.and(agree(comm, doubted.and(finished)));
     if result.is_ok() && !job.keep_state && comm.rank() == 0 {
@@ -185,7 +185,9 @@ fn bulk_plan(scene: &Scene, mesh: &Mesh, phases: &[Phase]) -> Option<BulkPlan> {
     }
     Some(BulkPlan {
         frames: phases.iter().flat_map(|phase| &phase.steps).filter(|target| target.bulk_output).count(),
-        coordinates: mesh.nodes.iter().map(|node| [node.x, node.y]).collect(),
-        cells: mesh.cells.iter().map(|cell| cell.four().map(i64::from)).collect(),
+        axes: 2,
+        coordinates: mesh.nodes.iter().flat_map(|node| [node.x, node.y]).collect(),
+        corners: 4,
+        cells: mesh.cells.iter().flat_map(|cell| cell.four().map(i64::from)).collect(),
     })
 }

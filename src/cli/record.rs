@@ -115,9 +115,14 @@ impl<'a> Recording<'a> {
         Ok(after)
     }
 
-    /// Closes the file with `status`; also gives the last row of the history.
-    pub fn finish(self, status: Status) -> (Result<()>, HistoryRow) {
-        let closed = self.recorder.map_or(Ok(()), |recorder| recorder.finish(status));
+    /// Closes the file with `status`, compressed where nothing is to go on from it (`last`); also gives the last row of the
+    /// history.
+    pub fn finish(self, status: Status, last: bool) -> (Result<()>, HistoryRow) {
+        let close = |recorder: Recorder| match (status, last) {
+            (Status::Complete, true) => recorder.finish_packed(),
+            _ => recorder.finish(status),
+        };
+        let closed = self.recorder.map_or(Ok(()), close);
         (closed, self.last)
     }
 
@@ -158,8 +163,8 @@ impl Observer for Recording<'_> {
             let frame = Frame {
                 time: report.time,
                 nodes: &fields.nodes,
-                displacement: &fields.displacement,
-                stress: &fields.stress,
+                displacement: fields.displacement.as_flattened(),
+                stress: fields.stress.as_flattened(),
             };
             output::bulk::write(self.world, self.recorder.as_ref(), &frame)?;
         }

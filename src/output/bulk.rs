@@ -26,11 +26,6 @@ use crate::checksum::row_sum;
 use crate::error::{Error, Result};
 use crate::parallel::{agree, broadcast};
 
-/// Numbers per node: displacement x, z; stress xx, zz, yy, xz.
-const PER_NODE: usize = 6;
-/// How many of them are displacement.
-const DISPLACEMENT: usize = 2;
-
 /// A rank writes at least so many bytes, or nothing: many small writes to one file get in each other's way.
 const LEAST_BYTES: usize = 1 << 18;
 
@@ -42,16 +37,18 @@ pub struct Frame<'a> {
     pub time: f64,
     /// Indices into [`BulkPlan::coordinates`](super::BulkPlan::coordinates), in any order.
     pub nodes: &'a [usize],
-    /// Displacement x, z of these nodes, m.
-    pub displacement: &'a [[f64; 2]],
-    /// Stress xx, zz, yy, xz at these nodes, Pa, tension positive.
-    pub stress: &'a [[f64; 4]],
+    /// Displacement of these nodes, m, node after node: x, z (or x, y, z).
+    pub displacement: &'a [f64],
+    /// Stress at these nodes, Pa, tension positive: xx, zz, yy, xz (or xx, yy, zz, xy, yz, xz).
+    pub stress: &'a [f64],
 }
 
 /// Where a frame goes; known to the recorder's rank and told to the others.
 struct Target {
     path: PathBuf,
     nodes: usize,
+    /// Components of the displacement, of the stress.
+    widths: [usize; 2],
     /// The number of the frame.
     row: usize,
     /// Where displacement and stress of the frame begin in the file.
@@ -66,7 +63,7 @@ where
 {
     let mut held = recorder.filter(|_| comm.rank() == 0).map(Recorder::lock);
     let target = announce(comm, held.as_mut())?;
-    let block = agree(comm, check(frame, target.nodes)).map(|()| redistribute(comm, frame, target.nodes))?;
+    let block = agree(comm, check(frame, &target)).map(|()| redistribute(comm, frame, &target))?;
     let block = agree(comm, block)?;
     let written = write_block(&target, &block).map_err(|error| failed(&target.path, error));
     let mine = agree(comm, written)?;
@@ -83,19 +80,22 @@ where
     let mine = match held {
         Some(state) => reserve(state),
         None if comm.rank() == 0 => Err(Error::Internal("bulk fields without a recorder on rank 0".into())),
-        None => Ok(Target { path: PathBuf::new(), nodes: 0, row: 0, at: [0; 2] }),
+        None => Ok(Target { path: PathBuf::new(), nodes: 0, widths: [1; 2], row: 0, at: [0; 2] }),
     };
     let mine = agree(comm, mine)?;
     let mut path = mine.path.as_os_str().as_bytes().to_vec();
     broadcast(comm, 0, &mut path);
-    let mut numbers = [mine.nodes as u64, mine.row as u64, mine.at[0], mine.at[1]].map(u64::to_ne_bytes).concat();
+    let [displacement, stress] = mine.widths.map(|width| width as u64);
+    let [row, nodes] = [mine.row, mine.nodes].map(|count| count as u64);
+    let mut numbers = [nodes, displacement, stress, row, mine.at[0], mine.at[1]].map(u64::to_ne_bytes).concat();
     broadcast(comm, 0, &mut numbers);
     let number = |index: usize| numbers.as_chunks().0.get(index).map_or(0, |bytes| u64::from_ne_bytes(*bytes));
     Ok(Target {
         path: Path::new(OsStr::from_bytes(&path)).to_owned(),
         nodes: number(0) as usize,
-        row: number(1) as usize,
-        at: [number(2), number(3)],
+        widths: [number(1) as usize, number(2) as usize],
+        row: number(3) as usize,
+        at: [number(4), number(5)],
     })
 }
 
@@ -111,12 +111,13 @@ fn reserve(state: &mut State) -> Result<Target> {
     drop(store.open()?);
     let row = store.rows(Table::Bulk);
     let at = [store.row_at(Table::Bulk, 0, row)?, store.row_at(Table::Bulk, 1, row)?];
-    Ok(Target { path: store.path().to_owned(), nodes: mesh.nodes, row, at })
+    let widths = [0, 1].map(|field| BULK.get(field).map_or(0, |field| field.components.names(mesh.axes).len()));
+    Ok(Target { path: store.path().to_owned(), nodes: mesh.nodes, widths, row, at })
 }
 
-fn check(frame: &Frame, nodes: usize) -> Result<()> {
-    let given = frame.nodes.len();
-    if frame.displacement.len() != given || frame.stress.len() != given {
+fn check(frame: &Frame, target: &Target) -> Result<()> {
+    let (given, nodes) = (frame.nodes.len(), target.nodes);
+    if [frame.displacement.len(), frame.stress.len()] != target.widths.map(|width| width * given) {
         return Err(Error::Internal("bulk fields and nodes differ in number".into()));
     }
     match frame.nodes.iter().find(|&&node| node >= nodes) {
@@ -128,8 +129,8 @@ fn check(frame: &Frame, nodes: usize) -> Result<()> {
 /// The nodes that one rank writes.
 struct Block {
     first: usize,
-    displacement: Vec<f64>,
-    stress: Vec<f64>,
+    /// Displacement, stress.
+    fields: [Vec<f64>; 2],
 }
 
 /// How nodes are dealt out to the ranks that write: blocks of `length` nodes, one on every `stride`-th rank.
@@ -141,8 +142,8 @@ struct Blocks {
 }
 
 impl Blocks {
-    fn new(nodes: usize, ranks: usize) -> Self {
-        let writers = (nodes * PER_NODE * size_of::<f64>() / LEAST_BYTES).clamp(1, ranks);
+    fn new(nodes: usize, numbers: usize, ranks: usize) -> Self {
+        let writers = (nodes * numbers * size_of::<f64>() / LEAST_BYTES).clamp(1, ranks);
         Self { nodes, length: nodes.div_ceil(writers).max(1), stride: ranks / writers }
     }
 
@@ -162,38 +163,39 @@ impl Blocks {
 }
 
 /// Sends every value to the rank that writes it.
-fn redistribute<C>(comm: &C, frame: &Frame, nodes: usize) -> Result<Block>
+fn redistribute<C>(comm: &C, frame: &Frame, target: &Target) -> Result<Block>
 where
     C: Communicator + CommunicatorCollectives,
 {
     let (rank, ranks) = (comm.rank() as usize, comm.size() as usize);
-    let blocks = Blocks::new(nodes, ranks);
+    let [displacement, stress] = target.widths;
+    let numbers = displacement + stress;
+    let blocks = Blocks::new(target.nodes, numbers, ranks);
     let mut order: Vec<usize> = (0..frame.nodes.len()).collect();
     order.sort_by_key(|&local| frame.nodes[local]);
     let mut counts = vec![0; ranks];
     let mut indices = Vec::with_capacity(order.len());
-    let mut values = Vec::with_capacity(order.len() * PER_NODE);
+    let mut values = Vec::with_capacity(order.len() * numbers);
     for local in order {
         counts[blocks.writer(frame.nodes[local])] += 1;
         indices.push(frame.nodes[local] as u64);
-        values.extend_from_slice(&frame.displacement[local]);
-        values.extend_from_slice(&frame.stress[local]);
+        values.extend_from_slice(&frame.displacement[local * displacement..(local + 1) * displacement]);
+        values.extend_from_slice(&frame.stress[local * stress..(local + 1) * stress]);
     }
     let mut incoming: Vec<Count> = vec![0; ranks];
     comm.all_to_all_into(&counts[..], &mut incoming[..]);
     let indices = exchange(comm, &indices, &counts, &incoming, 1);
-    let values = exchange(comm, &values, &counts, &incoming, PER_NODE);
+    let values = exchange(comm, &values, &counts, &incoming, numbers);
 
     let std::ops::Range { start: first, end } = blocks.of(rank);
     let mine = end - first;
-    let mut block =
-        Block { first, displacement: vec![f64::NAN; mine * DISPLACEMENT], stress: vec![f64::NAN; mine * 4] };
+    let mut block = Block { first, fields: target.widths.map(|width| vec![f64::NAN; mine * width]) };
     let mut seen = vec![false; mine];
-    for (&node, numbers) in indices.iter().zip(values.as_chunks::<PER_NODE>().0) {
+    for (&node, values) in indices.iter().zip(values.chunks_exact(numbers)) {
         let at = node as usize - first;
-        let (displacement, stress) = numbers.split_at(DISPLACEMENT);
-        block.displacement[at * 2..at * 2 + 2].copy_from_slice(displacement);
-        block.stress[at * 4..at * 4 + 4].copy_from_slice(stress);
+        let (first, second) = values.split_at(displacement);
+        block.fields[0][at * displacement..][..displacement].copy_from_slice(first);
+        block.fields[1][at * stress..][..stress].copy_from_slice(second);
         seen[at] = true;
     }
     match seen.iter().position(|seen| !seen) {
@@ -222,13 +224,13 @@ where
 
 /// Writes one rank's part; its share of the sum of the frame.
 fn write_block(target: &Target, block: &Block) -> std::io::Result<u64> {
-    if block.stress.is_empty() {
+    if block.fields.iter().all(Vec::is_empty) {
         return Ok(0);
     }
     let file = OpenOptions::new().write(true).open(&target.path)?;
     let mut sum = 0_u64;
-    for (index, (field, values)) in BULK.iter().zip([&block.displacement, &block.stress]).enumerate() {
-        let (first, bytes) = (block.first * field.components.len(), bytes(values));
+    for (index, (values, width)) in block.fields.iter().zip(target.widths).enumerate() {
+        let (first, bytes) = (block.first * width, bytes(values));
         file.write_all_at(&bytes, target.at[index] + (first * size_of::<f64>()) as u64)?;
         sum = row_sum(place(index, target.row), first, &bytes).wrapping_add(sum);
     }

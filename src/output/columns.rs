@@ -140,6 +140,35 @@ impl InterfaceFrame {
     }
 }
 
+/// How many components a field has, and what they are called.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Components {
+    /// One for each axis of the body.
+    Axes,
+    /// Those of a symmetric tensor.
+    Stress,
+}
+
+impl Components {
+    /// Their names in a body of so many axes, in the order of the file.
+    pub fn names(self, axes: usize) -> &'static [&'static str] {
+        match (self, axes) {
+            (Self::Axes, 3) => &["x", "y", "z"],
+            (Self::Axes, _) => &["x", "z"],
+            (Self::Stress, 3) => &["xx", "yy", "zz", "xy", "yz", "xz"],
+            (Self::Stress, _) => &["xx", "zz", "yy", "xz"],
+        }
+    }
+
+    /// The dataset of the same group that holds the names.
+    pub fn scale(self) -> &'static str {
+        match self {
+            Self::Axes => "axis",
+            Self::Stress => "component",
+        }
+    }
+}
+
 /// A field on the contact face, k x m.
 pub(super) struct Field {
     pub name: &'static str,
@@ -164,12 +193,12 @@ pub(super) struct BulkField {
     pub name: &'static str,
     pub units: &'static str,
     pub long_name: &'static str,
-    pub components: &'static [&'static str],
+    pub components: Components,
 }
 
 /// The nodal fields of `/bulk`; `time` follows them.
 #[rustfmt::skip]
 pub(super) const BULK: &[BulkField] = &[
-    BulkField { name: "displacement", units: "m", long_name: "displacement", components: &["x", "z"] },
-    BulkField { name: "stress", units: "Pa", long_name: "Cauchy stress at the nodes, tension positive", components: &["xx", "zz", "yy", "xz"] },
+    BulkField { name: "displacement", units: "m", long_name: "displacement", components: Components::Axes },
+    BulkField { name: "stress", units: "Pa", long_name: "Cauchy stress at the nodes, tension positive", components: Components::Stress },
 ];

@@ -22,6 +22,9 @@
 //!
 //! When more rows come than were planned, the file is copied, extended and renamed into place. So it is when the history gives
 //! warnings at the end of a run.
+//!
+//! A run that is complete has its fields compressed: the library writes all anew under another name, which is renamed to
+//! its place (`pack.rs`).
 
 pub mod bulk;
 pub mod checkpoint;
@@ -31,8 +34,10 @@ pub mod reader;
 mod columns;
 mod locate;
 pub mod ours;
+mod pack;
 mod recorder;
 mod resume;
+mod scales;
 mod skeleton;
 mod store;
 mod xdmf;
@@ -134,10 +139,14 @@ impl Rows {
 pub struct BulkPlan {
     /// Frames.
     pub frames: usize,
-    /// Undeformed coordinates x, z of all nodes, m.
-    pub coordinates: Vec<[f64; 2]>,
-    /// The four nodes of each cell, counter-clockwise, from 0.
-    pub cells: Vec<[i64; 4]>,
+    /// Coordinates of a node, and components of a displacement: 2 (x, z) or 3 (x, y, z).
+    pub axes: usize,
+    /// Undeformed coordinates of all nodes, m, node after node.
+    pub coordinates: Vec<f64>,
+    /// Nodes of a cell: 4 or 8.
+    pub corners: usize,
+    /// The nodes of each cell, from 0, cell after cell; those of a quadrilateral counter-clockwise.
+    pub cells: Vec<i64>,
 }
 
 /// The HDF5 library's error in one line, without its stack: the system's words where it quotes them.

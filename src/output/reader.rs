@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use hdf5::types::VarLenUnicode;
 
 use super::HistoryRow;
-use super::columns::{self, Value};
+use super::columns::{self, BULK, INTERFACE, Value};
 use crate::error::{Error, Result};
 use crate::input;
 
@@ -134,7 +134,8 @@ impl Results {
 
     fn table(&self, group: &str, name: &str) -> Result<Field> {
         let mut field = self.field(&format!("{group}/{name}"))?;
-        if !["x", "coordinates", "cells"].contains(&name) {
+        let mut grow = INTERFACE.iter().map(|field| field.name).chain(BULK.iter().map(|field| field.name));
+        if grow.any(|field| field == name) {
             let rows = self.field(&format!("{group}/time"))?.rows;
             field.rows = field.rows.min(rows);
             field.values.truncate(field.rows * field.columns);

@@ -10,7 +10,7 @@ use super::columns::{self, INTERFACE, Value};
 use super::reader::Results;
 use super::store::{Store, Table, failed};
 use super::xdmf::MeshSize;
-use super::{HistoryRow, InterfaceFrame, Metadata, Plan, Rows, Status, ours, resume, skeleton, xdmf};
+use super::{HistoryRow, InterfaceFrame, Metadata, Plan, Rows, Status, ours, pack, resume, skeleton, xdmf};
 use crate::error::{Error, Result};
 
 /// Rows wait no longer than this before they are written.
@@ -39,7 +39,7 @@ pub(super) struct State {
     pub(super) version: String,
     pub(super) mesh: Option<MeshSize>,
     pub(super) bulk_times: Vec<f64>,
-    begun: Instant,
+    pub(super) begun: Instant,
     history: Vec<HistoryRow>,
     interface: Vec<InterfaceFrame>,
     failure: Option<Error>,
@@ -162,6 +162,18 @@ impl Recorder {
 
     /// Writes what is left and how the run ended. Without this call the file says "stopped".
     pub fn finish(self, status: Status) -> Result<()> {
+        self.close(status)
+    }
+
+    /// Writes what is left of a run that is complete, and compresses its fields where that takes little time. No run can
+    /// go on from such a file.
+    pub fn finish_packed(self) -> Result<()> {
+        self.close(Status::Complete)?;
+        pack::pack(&self.shared.lock());
+        Ok(())
+    }
+
+    fn close(&self, status: Status) -> Result<()> {
         let mut state = self.shared.lock();
         state.check()?;
         state.flush()?;
@@ -219,7 +231,7 @@ impl State {
             store,
             plan,
             version,
-            mesh: bulk.map(|bulk| MeshSize { nodes: bulk.coordinates.len(), cells: bulk.cells.len() }),
+            mesh: bulk.as_ref().map(MeshSize::of),
             bulk_times: Vec::new(),
             begun,
             history: Vec::new(),

@@ -50,8 +50,8 @@ fn unchanged(results: &Results, plan: &Plan) -> Result<()> {
     let same = |name: &str, planned: &[f64]| Ok::<_, Error>(results.field(name)?.values == planned);
     let mut whole = same("interface/x", &plan.interface_x)?;
     if let Some(bulk) = &plan.bulk {
-        let cells: Vec<f64> = bulk.cells.as_flattened().iter().map(|&node| node as f64).collect();
-        whole &= same("bulk/coordinates", bulk.coordinates.as_flattened())? && same("bulk/cells", &cells)?;
+        let cells: Vec<f64> = bulk.cells.iter().map(|&node| node as f64).collect();
+        whole &= same("bulk/coordinates", &bulk.coordinates)? && same("bulk/cells", &cells)?;
     }
     match whole {
         true => Ok(()),

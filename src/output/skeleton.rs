@@ -4,56 +4,93 @@
 use std::path::Path;
 use std::str::FromStr;
 
+use hdf5::filters::deflate_available;
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
 use hdf5::plist::link_create::CharEncoding;
 use hdf5::types::VarLenUnicode;
 use hdf5::{Dataset, H5Type, Location};
 
-use super::columns::{self, BULK, INTERFACE, Value};
-use super::{Metadata, Plan, Status};
+use super::columns::{self, BULK, Components, INTERFACE, Value};
+use super::xdmf::MeshSize;
+use super::{BulkPlan, Metadata, Plan, Status};
 use crate::error::{Error, Result};
 
 /// The metadata of a file stands in one block of this size, so that one small write reaches all extents.
 const METADATA_BLOCK: u64 = 1 << 18;
 /// The HDF5 library's limit on a chunk is 4 GiB less one byte.
 const LARGEST_CHUNK: usize = u32::MAX as usize;
+/// Chunks that are compressed fit into the cache that readers have for them unless they ask for more.
+const PACKED_CHUNK: usize = 1 << 20;
+/// Of deflate: higher ones take several times as long for a few hundredths of the size.
+const LEVEL: u8 = 1;
 
-/// A table's name, the units and long name of its datasets, in the order of creation.
-type Described = Vec<(Dataset, &'static str, &'static str)>;
+/// What a file is made for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// Rows are added by [`super::store`]: one chunk, with room for all planned rows.
+    Growing,
+    /// All rows are written by the library; fields are compressed.
+    Packed,
+}
+
+/// A dataset, and what its attributes are to say.
+struct Described {
+    set: Dataset,
+    units: &'static str,
+    long_name: &'static str,
+    /// The dataset that is the scale of each dimension, named from the root.
+    scales: Vec<String>,
+}
+
+/// A file in the making.
+struct Skeleton<'a> {
+    file: &'a hdf5::File,
+    purpose: Purpose,
+    made: Vec<Described>,
+}
 
 /// Creates the file at `path`, which must not exist, with all extents at the planned number of rows and no row in it.
 pub(super) fn create(path: &Path, metadata: &Metadata, plan: &Plan) -> Result<()> {
-    write(path, metadata, plan)
+    write(path, &|file| root_attributes(file, metadata), plan, Purpose::Growing)
         .map_err(|error| Error::file(path, format!("cannot be created: {}", super::plain(&error))))
 }
 
-fn write(path: &Path, metadata: &Metadata, plan: &Plan) -> hdf5::Result<()> {
+/// The same with what `root` gives the root, for `purpose`.
+pub(super) fn write(
+    path: &Path,
+    root: &dyn Fn(&hdf5::File) -> hdf5::Result<()>,
+    plan: &Plan,
+    purpose: Purpose,
+) -> hdf5::Result<()> {
     let file = hdf5::File::with_options()
         .with_fapl(|access| access.libver_earliest().meta_block_size(METADATA_BLOCK))
         // Small chunk indices: a table has one chunk, or a few.
         .with_fcpl(|creation| creation.istore_k(1))
         .create_excl(path)?;
-    root_attributes(&file, metadata)?;
+    root(&file)?;
 
     // Datasets first and attributes after them, so that the headers lie close together.
-    let mut described = history(&file, plan)?;
-    let names = described.iter().position(|(set, ..)| set.name().ends_with("/phase"));
-    described.extend(interface(&file, plan)?);
-    described.extend(bulk(&file, plan)?);
-    for (set, units, long_name) in &described {
+    let mut skeleton = Skeleton { file: &file, purpose, made: Vec::new() };
+    skeleton.history(plan)?;
+    skeleton.interface(plan)?;
+    if let Some(bulk) = &plan.bulk {
+        skeleton.bulk(bulk)?;
+    }
+    let made = skeleton.made;
+    for Described { set, units, long_name, .. } in &made {
         text(set, "units", units)?;
         text(set, "long_name", long_name)?;
     }
-    if let Some((phase, ..)) = names.and_then(|at| described.get(at)) {
-        texts(phase, "names", &plan.phase_names)?;
-    }
-    if plan.bulk.is_some() {
+    super::scales::attach(&file, made.iter().map(|made| (&made.set, made.scales.as_slice())))?;
+    let phase = file.dataset("history/phase")?;
+    texts(&phase, "names", &plan.phase_names)?;
+    if let Some(bulk) = &plan.bulk {
         for field in BULK {
             let set = file.dataset(&format!("bulk/{}", field.name))?;
-            texts(&set, "components", field.components)?;
+            texts(&set, "components", field.components.names(bulk.axes))?;
         }
     }
-    drop(described);
+    drop(made);
     file.close()
 }
 
@@ -74,94 +111,157 @@ fn root_attributes(file: &hdf5::File, metadata: &Metadata) -> hdf5::Result<()> {
     texts(file, "status_values", &Status::ALL.map(Status::as_str))
 }
 
-fn history(file: &hdf5::File, plan: &Plan) -> hdf5::Result<Described> {
-    file.create_group("history")?;
-    if plan.energy {
-        file.create_group("history/energy")?;
-    }
-    columns::history(plan.energy)
-        .map(|column| {
-            let name = format!("history/{}", column.name);
+impl Skeleton<'_> {
+    fn history(&mut self, plan: &Plan) -> hdf5::Result<()> {
+        self.file.create_group("history")?;
+        if plan.energy {
+            self.file.create_group("history/energy")?;
+        }
+        for column in columns::history(plan.energy) {
+            let (name, rows) = (format!("history/{}", column.name), plan.history_rows);
             let set = match column.value {
-                Value::Real(_) => growing::<f64>(file, &name, plan.history_rows, &[])?,
-                Value::Count(_) => growing::<i64>(file, &name, plan.history_rows, &[])?,
+                Value::Real(_) => self.growing::<f64>(&name, rows, &[])?,
+                Value::Count(_) => self.growing::<i64>(&name, rows, &[])?,
             };
-            Ok((set, column.units, column.long_name))
-        })
-        .collect()
-}
-
-fn interface(file: &hdf5::File, plan: &Plan) -> hdf5::Result<Described> {
-    file.create_group("interface")?;
-    let (rows, nodes) = (plan.interface_rows, plan.interface_x.len());
-    let mut sets = INTERFACE
-        .iter()
-        .map(|field| {
-            let set = growing::<f64>(file, &format!("interface/{}", field.name), rows, &[nodes])?;
-            Ok((set, field.units, field.long_name))
-        })
-        .collect::<hdf5::Result<Described>>()?;
-    sets.push((growing::<f64>(file, "interface/time", rows, &[])?, "s", "time"));
-    let x = file.new_dataset::<f64>().shape(nodes).create("interface/x")?;
-    x.write_raw(&plan.interface_x)?;
-    sets.push((x, "m", "undeformed coordinate along the contact face"));
-    Ok(sets)
-}
-
-fn bulk(file: &hdf5::File, plan: &Plan) -> hdf5::Result<Described> {
-    let Some(bulk) = &plan.bulk else { return Ok(Vec::new()) };
-    file.create_group("bulk")?;
-    let nodes = bulk.coordinates.len();
-    let mut sets = BULK
-        .iter()
-        .map(|field| {
-            let row = [nodes, field.components.len()];
-            Ok((
-                growing::<f64>(file, &format!("bulk/{}", field.name), bulk.frames, &row)?,
-                field.units,
-                field.long_name,
-            ))
-        })
-        .collect::<hdf5::Result<Described>>()?;
-    sets.push((growing::<f64>(file, "bulk/time", bulk.frames, &[])?, "s", "time"));
-    let coordinates = file.new_dataset::<f64>().shape((nodes, 2)).create("bulk/coordinates")?;
-    coordinates.write_raw(bulk.coordinates.as_flattened())?;
-    sets.push((coordinates, "m", "undeformed coordinates x, z of the nodes"));
-    let cells = file.new_dataset::<i64>().shape((bulk.cells.len(), 4)).create("bulk/cells")?;
-    cells.write_raw(bulk.cells.as_flattened())?;
-    sets.push((cells, "1", "nodes of each quadrilateral, counter-clockwise, from 0"));
-    Ok(sets)
-}
-
-/// A dataset that rows are added to, created with room for `rows` of them, of shape `row` each. Room is set aside and
-/// not filled, so that the file takes no more of the disk than what is written.
-fn growing<T: H5Type>(file: &hdf5::File, name: &str, rows: usize, row: &[usize]) -> hdf5::Result<Dataset> {
-    let row_bytes = size_of::<T>() * row.iter().product::<usize>();
-    if row_bytes > LARGEST_CHUNK {
-        return Err(format!("a row of /{name} has {row_bytes} bytes; HDF5 takes up to {LARGEST_CHUNK}").into());
+            self.describe(set, (column.units, column.long_name), "history", &["time"]);
+        }
+        Ok(())
     }
-    let chunk_rows = (LARGEST_CHUNK / row_bytes.max(1)).clamp(1, rows.max(1));
-    // Whole chunks only: the room in the last one is there anyway.
-    let rows = rows.max(1).next_multiple_of(chunk_rows);
-    let extents: Vec<hdf5::Extent> =
-        std::iter::once(hdf5::Extent::resizable(rows)).chain(row.iter().map(|&n| hdf5::Extent::fixed(n))).collect();
-    let chunk: Vec<usize> = std::iter::once(chunk_rows).chain(row.iter().copied()).collect();
-    file.new_dataset::<T>()
-        .shape(hdf5::SimpleExtents::from_vec(extents))
-        .chunk(chunk)
-        .alloc_time(Some(AllocTime::Early))
-        .fill_time(FillTime::Never)
-        .obj_track_times(false)
-        .create(name)
+
+    fn interface(&mut self, plan: &Plan) -> hdf5::Result<()> {
+        const GROUP: &str = "interface";
+        self.file.create_group(GROUP)?;
+        let (rows, nodes) = (plan.interface_rows, plan.interface_x.len());
+        for field in INTERFACE {
+            let set = self.growing::<f64>(&format!("{GROUP}/{}", field.name), rows, &[nodes])?;
+            self.describe(set, (field.units, field.long_name), GROUP, &["time", "x"]);
+        }
+        self.time(GROUP, rows)?;
+        let about = ("m", "undeformed coordinate along the contact face");
+        self.fixed((GROUP, "x"), &plan.interface_x, about, &[("x", nodes)])
+    }
+
+    fn bulk(&mut self, plan: &BulkPlan) -> hdf5::Result<()> {
+        const GROUP: &str = "bulk";
+        self.file.create_group(GROUP)?;
+        let MeshSize { nodes, cells, axes, corners } = MeshSize::of(plan);
+        for field in BULK {
+            let row = [nodes, field.components.names(axes).len()];
+            let set = self.growing::<f64>(&format!("{GROUP}/{}", field.name), plan.frames, &row)?;
+            self.describe(set, (field.units, field.long_name), GROUP, &["time", "node", field.components.scale()]);
+        }
+        self.time(GROUP, plan.frames)?;
+        let (node, axis, cell, corner) = (("node", nodes), ("axis", axes), ("cell", cells), ("corner", corners));
+        let about = ("m", "undeformed coordinates of the nodes");
+        self.fixed((GROUP, "coordinates"), &plan.coordinates, about, &[node, axis])?;
+        let about = ("1", "nodes of each cell, from 0, counter-clockwise in a quadrilateral");
+        self.fixed((GROUP, "cells"), &plan.cells, about, &[cell, corner])?;
+        for ((name, count), what) in
+            [(node, "index of a node"), (cell, "index of a cell"), (corner, "corner of a cell")]
+        {
+            let indices: Vec<i64> = (0..count as i64).collect();
+            self.fixed((GROUP, name), &indices, ("1", what), &[(name, count)])?;
+        }
+        for (components, what) in [(Components::Axes, "axis"), (Components::Stress, "component of a stress")] {
+            let names = components.names(axes).iter().map(|name| unicode(name)).collect::<hdf5::Result<Vec<_>>>()?;
+            let dimension = (components.scale(), names.len());
+            self.fixed((GROUP, components.scale()), &names, ("1", what), &[dimension])?;
+        }
+        Ok(())
+    }
+
+    /// The times of a group's rows.
+    fn time(&mut self, group: &str, rows: usize) -> hdf5::Result<()> {
+        let set = self.growing::<f64>(&format!("{group}/time"), rows, &[])?;
+        self.describe(set, ("s", "time"), group, &["time"]);
+        Ok(())
+    }
+
+    /// Notes what a dataset is, and which datasets of the group are the scales of its dimensions.
+    fn describe(
+        &mut self,
+        set: Dataset,
+        (units, long_name): (&'static str, &'static str),
+        group: &str,
+        scales: &[&str],
+    ) {
+        let scales = scales.iter().map(|scale| format!("{group}/{scale}")).collect();
+        self.made.push(Described { set, units, long_name, scales });
+    }
+
+    /// A dataset that is written whole, with the scale and the length of each dimension.
+    fn fixed<T: H5Type>(
+        &mut self,
+        (group, name): (&str, &str),
+        values: &[T],
+        about: (&'static str, &'static str),
+        dimensions: &[(&str, usize)],
+    ) -> hdf5::Result<()> {
+        let (scales, shape): (Vec<&str>, Vec<usize>) = dimensions.iter().copied().unzip();
+        let mut builder = self.file.new_dataset::<T>();
+        if size_of_val(values) >= PACKED_CHUNK / 16 && deflate_available() {
+            builder = builder.chunk(packed_chunk(&shape, size_of::<T>())).shuffle().deflate(LEVEL);
+        }
+        let set = builder.shape(shape).obj_track_times(false).create(format!("{group}/{name}").as_str())?;
+        set.write_raw(values)?;
+        self.describe(set, about, group, &scales);
+        Ok(())
+    }
+
+    /// A dataset that rows are added to, created with room for `rows` of them, of shape `row` each. Room is set aside and
+    /// not filled, so that the file takes no more of the disk than what is written. Where the file is packed, fields are
+    /// compressed.
+    fn growing<T: H5Type>(&self, name: &str, rows: usize, row: &[usize]) -> hdf5::Result<Dataset> {
+        let row_bytes = size_of::<T>() * row.iter().product::<usize>();
+        if row_bytes > LARGEST_CHUNK {
+            return Err(format!("a row of /{name} has {row_bytes} bytes; HDF5 takes up to {LARGEST_CHUNK}").into());
+        }
+        let shape = |rows: usize| -> Vec<usize> { std::iter::once(rows).chain(row.iter().copied()).collect() };
+        let builder = self.file.new_dataset::<T>().obj_track_times(false);
+        if self.purpose == Purpose::Packed {
+            let builder = match (row.is_empty(), rows) {
+                (true, _) | (_, 0) => builder,
+                (false, _) => builder.chunk(packed_chunk(&shape(rows), size_of::<T>())).shuffle().deflate(LEVEL),
+            };
+            return builder.shape(shape(rows)).create(name);
+        }
+        let chunk_rows = (LARGEST_CHUNK / row_bytes.max(1)).clamp(1, rows.max(1));
+        // Whole chunks only: the room in the last one is there anyway.
+        let rows = rows.max(1).next_multiple_of(chunk_rows);
+        let extents: Vec<hdf5::Extent> =
+            std::iter::once(hdf5::Extent::resizable(rows)).chain(row.iter().map(|&n| hdf5::Extent::fixed(n))).collect();
+        builder
+            .shape(hdf5::SimpleExtents::from_vec(extents))
+            .chunk(shape(chunk_rows))
+            .alloc_time(Some(AllocTime::Early))
+            .fill_time(FillTime::Never)
+            .create(name)
+    }
+}
+
+/// The chunk of a compressed dataset: whole rows, or a part of one.
+fn packed_chunk(shape: &[usize], number_bytes: usize) -> Vec<usize> {
+    let mut room = PACKED_CHUNK / number_bytes;
+    let mut chunk: Vec<usize> = shape
+        .iter()
+        .rev()
+        .map(|&length| {
+            let taken = length.clamp(1, room.max(1));
+            room /= taken;
+            taken
+        })
+        .collect();
+    chunk.reverse();
+    chunk
 }
 
 /// A scalar attribute without a value yet.
-fn attribute<T: H5Type>(object: &Location, name: &str) -> hdf5::Result<hdf5::Attribute> {
+pub(super) fn attribute<T: H5Type>(object: &Location, name: &str) -> hdf5::Result<hdf5::Attribute> {
     object.new_attr::<T>().char_encoding(CharEncoding::Ascii).create(name)
 }
 
 /// A string attribute. Of variable length: h5py gives `str` for those and bytes for the others.
-fn text(object: &Location, name: &str, value: &str) -> hdf5::Result<()> {
+pub(super) fn text(object: &Location, name: &str, value: &str) -> hdf5::Result<()> {
     attribute::<VarLenUnicode>(object, name)?.write_scalar(&unicode(value)?)
 }
 

@@ -6,7 +6,7 @@ use std::os::unix::fs::{FileExt, MetadataExt};
 use std::path::{Path, PathBuf};
 
 use super::columns::{self, BULK, INTERFACE};
-use super::{Plan, Rows, Status, locate, skeleton};
+use super::{Plan, Status, locate, skeleton};
 use crate::checksum::row_sum;
 use crate::error::{Error, Result};
 use crate::petsc::object_address::object_address;
@@ -47,6 +47,29 @@ pub(super) struct Store {
     status_at: u64,
     /// What to write at `status_at` for each of `Status::ALL`: references to the strings of `status_values`.
     status_values: Vec<[u8; 16]>,
+}
+
+/// The committed rows of a dataset, and where they are in the file.
+pub(super) struct Rows<'a> {
+    pub table: Table,
+    pub count: usize,
+    series: &'a Series,
+}
+
+impl Rows<'_> {
+    /// From the root.
+    pub fn name(&self) -> &str {
+        &self.series.name
+    }
+
+    pub fn row_bytes(&self) -> usize {
+        self.series.row_bytes
+    }
+
+    /// Where a row begins in the file.
+    pub fn at(&self, row: usize) -> Option<u64> {
+        self.series.row_at(row)
+    }
 }
 
 /// The datasets of a table, named from the root.
@@ -103,7 +126,7 @@ impl Store {
     }
 
     /// Learns where everything is from the file at `path` of which `rows` are to stay, which must be as they were written.
-    pub(super) fn reopen(path: &Path, plan: &Plan, rows: Rows) -> Result<Self> {
+    pub(super) fn reopen(path: &Path, plan: &Plan, rows: super::Rows) -> Result<Self> {
         let mut store = Self::locate(path, plan)?;
         for ((series, count), rows) in store.tables.iter_mut().zip(rows.counts()) {
             let visible = |series: &Series| {
@@ -145,9 +168,9 @@ impl Store {
     }
 
     /// The rows that are there to stay.
-    pub(super) fn committed(&self) -> Rows {
+    pub(super) fn committed(&self) -> super::Rows {
         let [history, interface, bulk] = [Table::History, Table::Interface, Table::Bulk].map(|table| self.rows(table));
-        Rows { history, interface, bulk, sums: self.sums }
+        super::Rows { history, interface, bulk, sums: self.sums }
     }
 
     /// The file.
@@ -160,7 +183,16 @@ impl Store {
         self.path = path.to_owned();
     }
 
-    /// The committed rows of a table.
+    /// The committed rows of all datasets.
+    pub(super) fn stored(&self) -> Vec<Rows<'_>> {
+        let mut stored = Vec::new();
+        for (table, (all, count)) in [Table::History, Table::Interface, Table::Bulk].into_iter().zip(&self.tables) {
+            stored.extend(all.iter().map(|series| Rows { table, count: *count, series }));
+        }
+        stored
+    }
+
+    /// How many committed rows a table has.
     pub(super) fn rows(&self, table: Table) -> usize {
         self.tables[table as usize].1
     }

@@ -4,18 +4,30 @@ use std::fmt::Write as _;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::columns::BULK;
+use super::BulkPlan;
+use super::columns::{self, BULK, Components};
 use crate::error::{Error, Result};
 
 /// How a file begins that this program wrote.
 pub(super) const BEGIN: &[u8] =
     b"<?xml version=\"1.0\" ?>\n<!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<!-- Written by mpjr";
 
-/// Numbers of nodes and cells.
+/// Numbers of nodes and cells, and of what belongs to one of them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MeshSize {
     pub nodes: usize,
     pub cells: usize,
+    pub axes: usize,
+    pub corners: usize,
+}
+
+impl MeshSize {
+    pub fn of(plan: &BulkPlan) -> Self {
+        let BulkPlan { axes, corners, .. } = *plan;
+        let nodes = plan.coordinates.len().checked_div(axes).unwrap_or(0);
+        let cells = plan.cells.len().checked_div(corners).unwrap_or(0);
+        Self { nodes, cells, axes, corners }
+    }
 }
 
 /// The XDMF file that belongs to a result file.
@@ -54,14 +66,15 @@ pub(super) fn write(results: &Path, version: &str, mesh: MeshSize, times: &[f64]
     outcome.map_err(|error| super::store::failed(&path, error))
 }
 
-/// The document. x and z of the layer are ParaView's X and Y; the displacement gets a zero third component, the
+/// The document. x and z of a plane layer are ParaView's X and Y, and its displacement gets a zero third component; the
 /// components of the stress are scalars.
 fn text(name: &str, version: &str, mesh: MeshSize, times: &[f64]) -> String {
-    let MeshSize { nodes, cells } = mesh;
+    let MeshSize { nodes, cells, axes, corners } = mesh;
+    let (topology, geometry) = if axes == 3 { ("Hexahedron", "XYZ") } else { ("Quadrilateral", "XY") };
     let frames = times.len();
     let mut out = format!(
         r#"{} {version}; the fields are in the HDF5 file of the same name. -->
-<Xdmf Version="2.0">
+<Xdmf Version="3.0">
   <Domain>
     <Grid Name="bulk" GridType="Collection" CollectionType="Temporal">
 "#,
@@ -73,57 +86,70 @@ fn text(name: &str, version: &str, mesh: MeshSize, times: &[f64]) -> String {
             out,
             r#"      <Grid Name="frame {frame}" GridType="Uniform">
         <Time Value="{time:?}"/>
-        <Topology TopologyType="Quadrilateral" NumberOfElements="{cells}">
-          <DataItem Format="HDF" NumberType="Int" Precision="8" Dimensions="{cells} 4">{name}:/bulk/cells</DataItem>
+        <Topology TopologyType="{topology}" NumberOfElements="{cells}">
+          <DataItem Format="HDF" NumberType="Int" Precision="8" Dimensions="{cells} {corners}">{name}:/bulk/cells</DataItem>
         </Topology>
-        <Geometry GeometryType="XY">
-          <DataItem Format="HDF" NumberType="Float" Precision="8" Dimensions="{nodes} 2">{name}:/bulk/coordinates</DataItem>
+        <Geometry GeometryType="{geometry}">
+          <DataItem Format="HDF" NumberType="Float" Precision="8" Dimensions="{nodes} {axes}">{name}:/bulk/coordinates</DataItem>
         </Geometry>
 "#
         );
         for field in BULK {
-            let width = field.components.len();
-            let slab = |component: usize| {
-                format!(
-                    r#"<DataItem ItemType="HyperSlab" NumberType="Float" Precision="8" Dimensions="{nodes} 1">
-              <DataItem Dimensions="3 3" Format="XML">{frame} 0 {component} 1 1 1 1 {nodes} 1</DataItem>
-              <DataItem Format="HDF" NumberType="Float" Precision="8" Dimensions="{frames} {nodes} {width}">{name}:/bulk/{}</DataItem>
-            </DataItem>"#,
-                    field.name
-                )
-            };
-            let _ = if width == 2 {
-                write!(
-                    out,
-                    r#"        <Attribute Name="{}" AttributeType="Vector" Center="Node">
-          <DataItem ItemType="Function" Function="JOIN($0, $1, 0 * $1)" Dimensions="{nodes} 3">
-            {}
-            {}
-          </DataItem>
-        </Attribute>
-"#,
-                    field.name,
-                    slab(0),
-                    slab(1)
-                )
-            } else {
-                field.components.iter().enumerate().try_for_each(|(component, label)| {
-                    write!(
-                        out,
-                        r#"        <Attribute Name="{}_{label}" AttributeType="Scalar" Center="Node">
-            {}
-        </Attribute>
-"#,
-                        field.name,
-                        slab(component)
-                    )
-                })
-            };
+            attributes(&mut out, (name, mesh), (frame, frames), field);
         }
         out.push_str("      </Grid>\n");
     }
     out.push_str("    </Grid>\n  </Domain>\n</Xdmf>\n");
     out
+}
+
+/// One field of one frame: a vector, or a scalar for each component.
+fn attributes(
+    out: &mut String,
+    (name, mesh): (&str, MeshSize),
+    (frame, frames): (usize, usize),
+    field: &columns::BulkField,
+) {
+    let (label, nodes) = (field.name, mesh.nodes);
+    let components = field.components.names(mesh.axes);
+    let width = components.len();
+    // `count` components from `first` on.
+    let slab = |first: usize, count: usize| {
+        format!(
+            r#"<DataItem ItemType="HyperSlab" NumberType="Float" Precision="8" Dimensions="{nodes} {count}">
+              <DataItem Dimensions="3 3" Format="XML">{frame} 0 {first} 1 1 1 1 {nodes} {count}</DataItem>
+              <DataItem Format="HDF" NumberType="Float" Precision="8" Dimensions="{frames} {nodes} {width}">{name}:/bulk/{label}</DataItem>
+            </DataItem>"#
+        )
+    };
+    let mut attribute = |label: &str, kind: &str, data: &str| {
+        // Writing to a string cannot fail.
+        let _ = write!(
+            out,
+            r#"        <Attribute Name="{label}" AttributeType="{kind}" Center="Node">
+            {data}
+        </Attribute>
+"#
+        );
+    };
+    match (field.components, width) {
+        (Components::Axes, 2) => {
+            let (x, z) = (slab(0, 1), slab(1, 1));
+            let join = format!(
+                r#"<DataItem ItemType="Function" Function="JOIN($0, $1, 0 * $1)" Dimensions="{nodes} 3">
+            {x}
+            {z}
+          </DataItem>"#
+            );
+            attribute(label, "Vector", &join);
+        }
+        (Components::Axes, _) => attribute(label, "Vector", &slab(0, width)),
+        (Components::Stress, _) => {
+            for (index, component) in components.iter().enumerate() {
+                attribute(&format!("{label}_{component}"), "Scalar", &slab(index, 1));
+            }
+        }
+    }
 }
 
 /// A file name as XML text.

@@ -1,4 +1,4 @@
-//! Thin safe wrappers of PETSc, and of one call of HDF5: the only `unsafe` of the crate.
+//! Thin safe wrappers of PETSc, and of two uses of HDF5: the only `unsafe` of the crate.
 //!
 //! A handle owns its object and destroys it when dropped; every code is checked; what PETSc says of a failure becomes
 //! the text of an [`Error`](crate::error::Error). Everything here is collective over the communicator of its objects
@@ -7,6 +7,7 @@
 mod error;
 mod factor;
 mod ffi;
+pub mod fixed_text;
 mod matrix;
 pub mod object_address;
 mod partition;

@@ -194,7 +194,7 @@ pub fn output_of(command: &mut Command) -> String {
     text
 }
 
-/// Every number of a result file: history, interface and bulk, with a name for messages.
+/// Every number of a result file: history, interface and bulk, with a name for messages. Names of components are no numbers.
 pub fn numbers(path: &Path) -> Vec<(String, Vec<f64>)> {
     let results = Results::open(path).unwrap();
     let file = hdf5::File::open(path).unwrap();
@@ -212,6 +212,9 @@ pub fn numbers(path: &Path) -> Vec<(String, Vec<f64>)> {
     }
     for group in ["interface", "bulk"] {
         for field in file.group(group).map(|group| group.member_names().unwrap()).unwrap_or_default() {
+            if ["axis", "component"].contains(&field.as_str()) {
+                continue;
+            }
             let values = if group == "bulk" { results.bulk(&field) } else { results.interface(&field) };
             all.push((format!("{group}/{field}"), values.unwrap().values));
         }

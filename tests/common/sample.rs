@@ -39,11 +39,13 @@ pub fn mesh(nx: usize, nz: usize, frames: usize) -> BulkPlan {
     let node = |i: usize, k: usize| (k * (nx + 1) + i) as i64;
     BulkPlan {
         frames,
+        axes: 2,
         coordinates: (0..=nz)
-            .flat_map(|k| (0..=nx).map(move |i| [i as f64 / nx as f64, k as f64 / nz as f64 - 1.0]))
+            .flat_map(|k| (0..=nx).flat_map(move |i| [i as f64 / nx as f64, k as f64 / nz as f64 - 1.0]))
             .collect(),
+        corners: 4,
         cells: (0..nz)
-            .flat_map(|k| (0..nx).map(move |i| [node(i, k), node(i + 1, k), node(i + 1, k + 1), node(i, k + 1)]))
+            .flat_map(|k| (0..nx).flat_map(move |i| [node(i, k), node(i + 1, k), node(i + 1, k + 1), node(i, k + 1)]))
             .collect(),
     }
 }

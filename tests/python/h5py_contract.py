@@ -15,6 +15,18 @@ ENERGY = "external_work stored viscoelastic_dissipation friction_dissipation pen
 INTERFACE = "pressure shear gap slip_rate displacement_x displacement_z".split()
 
 
+def check_scales(file, data):
+    """Each dimension has one scale, of its length, in the same group or the one above; both ends know of each other."""
+    if h5py.h5ds.is_scale(data.id):
+        return
+    for index, dimension in enumerate(data.dims):
+        (name,) = dimension.keys()
+        scale = dimension[0]
+        assert h5py.h5ds.is_scale(scale.id) and h5py.h5ds.is_attached(data.id, scale.id, index), data.name
+        assert scale.name.rsplit("/", 1)[1] == name and data.name.startswith(scale.parent.name), (data.name, scale.name)
+        assert scale.shape == data.shape[index : index + 1], (data.name, scale.name)
+
+
 def check(path):
     with h5py.File(path, "r") as file:
         for name, kind in ROOT.items():
@@ -27,6 +39,8 @@ def check(path):
             if isinstance(item, h5py.Dataset):
                 assert isinstance(item.attrs["units"], str), name
                 assert isinstance(item.attrs["long_name"], str) and item.attrs["long_name"], name
+
+                check_scales(file, item)
 
         file.visititems(described)
 

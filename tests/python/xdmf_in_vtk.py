@@ -1,9 +1,14 @@
-"""Opens an XDMF file as ParaView does (vtkXdmfReader) and compares every frame with h5py: python3 tests/python/xdmf_in_vtk.py FILE.xdmf"""
+"""Opens an XDMF file as ParaView does (vtkXdmfReader), with pyvista and with meshio, and compares with h5py:
+
+python3 tests/python/xdmf_in_vtk.py FILE.xdmf
+"""
 
 import sys
 
 import h5py
+import meshio
 import numpy as np
+import pyvista
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
@@ -39,5 +44,30 @@ def check(path):
     print(f"{path}: {len(steps)} frames as in the HDF5 file")
 
 
+def check_pyvista(path):
+    reader = pyvista.get_reader(path)
+    with h5py.File(path.removesuffix(".xdmf") + ".h5", "r") as file:
+        assert np.array_equal(reader.time_values, file["bulk/time"][:])
+        for frame, time in enumerate(reader.time_values):
+            reader.set_active_time_value(time)
+            grid = reader.read()
+            while isinstance(grid, pyvista.MultiBlock):
+                grid = grid[0]
+            assert np.array_equal(grid["displacement"][:, :2], file["bulk/displacement"][frame])
+            assert np.array_equal(grid["stress_xz"].ravel(), file["bulk/stress"][frame, :, 3])
+    print(f"{path}: all fields in pyvista {pyvista.__version__}")
+
+
+def check_meshio(path):
+    """The mesh; meshio does not know the slices that the fields are."""
+    with meshio.xdmf.TimeSeriesReader(path) as reader, h5py.File(path.removesuffix(".xdmf") + ".h5", "r") as file:
+        points, (cells,) = reader.read_points_cells()
+        assert np.array_equal(points, file["bulk/coordinates"][:])
+        assert cells.type == "quad" and np.array_equal(cells.data, file["bulk/cells"][:])
+    print(f"{path}: the mesh in meshio {meshio.__version__}")
+
+
 for path in sys.argv[1:]:
     check(path)
+    check_pyvista(path)
+    check_meshio(path)
