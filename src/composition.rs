@@ -9,14 +9,15 @@ use std::cell::RefCell;
 use std::collections::HashSet;
 use std::path::Path;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use crate::bulk::Arms;
 use crate::element::mpjr::Quadrature;
-use crate::error::Result;
-use crate::friction::{Coulomb, CoulombTanh, ElasticSlip, Law};
+use crate::error::{Error, Result};
+use crate::friction::{Coefficient, Coulomb, CoulombTanh, ElasticSlip, Law, Strength};
 use crate::interface::{Interface, Laws};
 use crate::loading::{self, Adaptive, Motion, Phase, Placement};
 use crate::mesh::Mesh;
@@ -122,7 +123,8 @@ pub fn assemble(
     compliances: &Compliances,
 ) -> Result<Problem> {
     let materials = Materials::new(scene);
-    let laws = Laws { profile, penalty: body::penalty(scene, &mesh), friction: scene.friction.as_ref().map(friction) };
+    let friction = scene.friction.as_ref().map(friction).transpose()?;
+    let laws = Laws { profile, penalty: body::penalty(scene, &mesh), friction };
     let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
     let solid = Solid { mesh, quadrilateral: body::quadrilateral(scene), regions: materials.regions.clone() };
     let mut problem = match form(scene) {
@@ -274,16 +276,21 @@ fn periodic_column(scene: &Scene, solid: &Solid) -> Option<PeriodicColumn> {
     Some(PeriodicColumn::new(solid, layer.cells))
 }
 
-fn friction(friction: &scene::Friction) -> Box<dyn Law> {
-    match *friction {
-        scene::Friction::CoulombTanh { coefficient, regularisation } => {
-            Box::new(CoulombTanh { coefficient, regularisation })
+fn friction(friction: &scene::Friction) -> Result<Box<dyn Law>> {
+    let coefficient = match &friction.coefficient {
+        scene::Coefficient::Number(number) => Coefficient::Constant(*number),
+        scene::Coefficient::Formula(formula) => {
+            // It was read before.
+            let expression = friction.expression(formula).map_err(|fault| Error::Internal(fault.to_string()))?;
+            Coefficient::Formula(Arc::new(expression))
         }
-        scene::Friction::CoulombElasticSlip { coefficient, elastic_slip } => {
-            Box::new(ElasticSlip { coefficient, elastic_slip })
-        }
-        scene::Friction::Coulomb { coefficient } => Box::new(Coulomb { coefficient }),
-    }
+    };
+    let strength = Strength::new(coefficient, friction.shear_limit);
+    Ok(match friction.law {
+        scene::Law::CoulombTanh { regularisation } => Box::new(CoulombTanh { strength, regularisation }),
+        scene::Law::CoulombElasticSlip { elastic_slip } => Box::new(ElasticSlip { strength, elastic_slip }),
+        scene::Law::Coulomb => Box::new(Coulomb { strength }),
+    })
 }
 
 fn quadrature(quadrature: scene::Quadrature) -> Quadrature {

@@ -15,8 +15,8 @@ mod state;
 use nalgebra::{SVector, Vector2};
 
 use crate::element::mpjr::Quadrature;
-use crate::error::Result;
-use crate::friction::Law;
+use crate::error::{Error, Result};
+use crate::friction::{Circumstances, Lasting, Law};
 use crate::loading::Placement;
 use crate::mesh::Face;
 use crate::profile::Profile;
@@ -151,11 +151,23 @@ impl Interface {
     /// Takes the accepted state to the end of a step.
     ///
     /// # Errors
-    /// As for [`Self::place`].
+    /// As for [`Self::place`]; where the coefficient of friction is none at a point in contact.
     pub fn commit(&mut self, placement: Placement, states: Vec<State<2>>) -> Result<()> {
         self.place(placement)?;
+        self.check_friction(placement.dt, &states)?;
         (self.accepted, self.place) = (states, Placement { dt: 0.0, ..placement });
         Ok(())
+    }
+
+    /// Refuses states under a coefficient of friction that is negative or not finite.
+    fn check_friction(&self, dt: f64, states: &[State<2>]) -> Result<()> {
+        let Some(law) = self.friction() else { return Ok(()) };
+        let fault = |(before, state): (&State<2>, &State<2>)| {
+            let at = Circumstances { pressure: state.pressure, dt, resolution: 0.0, slid: before.slid };
+            law.strength().fault(at, Lasting { length: state.slid - before.slid, by_slip: 0.0 })
+        };
+        let mut touched = self.accepted.iter().zip(states).filter(|(_, state)| state.pressure > 0.0);
+        touched.find_map(fault).map_or(Ok(()), |fault| Err(Error::Solver(fault)))
     }
 
     /// The integrals over the face at the accepted state.

@@ -35,7 +35,7 @@ fn scene(directory: &Path, steps: usize, material: &str, solver: &str) -> PathBu
         penalty = 1e6
         [friction]
         law = "coulomb_tanh"
-        coefficient = 0.2
+        coefficient = "0.15 + 0.05*exp(-s/0.02)"
         regularisation = 1e-3
         [[phase]]
         name = "indent"

@@ -6,10 +6,12 @@
 mod mpi_cases;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use mpi::topology::SimpleCommunicator;
 use mpi_cases::Case;
-use mpjr::friction::{Coulomb, CoulombTanh, ElasticSlip, Law};
+use mpjr::expression::Expression;
+use mpjr::friction::{Coefficient, Coulomb, CoulombTanh, ElasticSlip, Law, Strength, VARIABLES};
 use mpjr::interface::State;
 use mpjr::solve::traction::{Factor, Laws, Moduli, Operator, Outcome, Site, product, settle};
 use nalgebra::{DMatrix, SMatrix, SVector};
@@ -57,6 +59,7 @@ impl<const D: usize> Face<D> {
             clearance: 0.2 * draw.unit() - 0.5,
             drive: draw.vector(),
             elastic: SVector::zeros(),
+            slid: 0.3,
             moduli: Moduli { normal: 0.3, tangential: Some(0.4) },
             lengths: [1.0; 2],
         };
@@ -89,12 +92,21 @@ fn excesses<const D: usize>(outcome: &Outcome<D>) -> Vec<SVector<f64, D>> {
 }
 
 fn all_laws(check: impl Fn(Laws<'_>)) {
-    let tanh = CoulombTanh { coefficient: 0.4, regularisation: 0.9 };
-    let elastic = ElasticSlip { coefficient: 0.4, elastic_slip: 0.7 };
-    let exact = Coulomb { coefficient: 0.4 };
-    let friction: [Option<&dyn Law>; 4] = [None, Some(&tanh), Some(&elastic), Some(&exact)];
-    for penalty in [None, Some(2.0)] {
-        friction.iter().for_each(|&friction| check(Laws { penalty, friction, dt: 0.5, resolution: 0.0, load: None }));
+    // Weakens with the rate and with the distance, by less than any rho of these tests; strengthens with the pressure up to a limit.
+    let formula = Expression::parse("0.38 + 0.01*exp(-v/2) + 0.01*exp(-s) + 0.02*p", &VARIABLES).unwrap();
+    let formula = Strength::new(Coefficient::Formula(Arc::new(formula)), Some(0.6));
+    let laws = [Strength::constant(0.4), formula].map(|strength| -> [Box<dyn Law>; 3] {
+        [
+            Box::new(CoulombTanh { strength: strength.clone(), regularisation: 0.9 }),
+            Box::new(ElasticSlip { strength: strength.clone(), elastic_slip: 0.7 }),
+            Box::new(Coulomb { strength }),
+        ]
+    });
+    let friction = std::iter::once(None).chain(laws.as_flattened().iter().map(|law| Some(&**law)));
+    for friction in friction {
+        for penalty in [None, Some(2.0)] {
+            check(Laws { penalty, friction, dt: 0.5, resolution: 0.0, load: None });
+        }
     }
 }
 
@@ -150,8 +162,9 @@ fn solution<const D: usize>() {
             assert!(end.norm(&face.sites) <= end.noise(&face.sites), "{laws:?} {rho}: {:e}", end.norm(&face.sites));
             for ((site, answer), motion) in face.sites.iter().zip(&end.answers).zip(&end.motions) {
                 let state = answer.state(site, motion, laws, &State::default());
-                let f = laws.friction.map_or(0.0, Law::coefficient);
-                assert!(state.pressure >= 0.0 && state.shear.norm() <= f * state.pressure * (1.0 + 1e-14));
+                let at = site.circumstances(state.pressure, laws);
+                let bound = laws.friction.map_or(0.0, |law| law.bound(at, answer.slip.norm()).value);
+                assert!(state.pressure >= 0.0 && state.shear.norm() <= bound * (1.0 + 1e-14));
             }
             solved.push(end.tractions);
         }
@@ -163,7 +176,7 @@ fn solution<const D: usize>() {
 
 /// A point that is held along the face answers with what its law says of the slip, or takes any shear that Coulomb allows.
 fn a_held_point_has_the_shear_of_its_slip(_: &SimpleCommunicator, _: &Path) {
-    let law = Coulomb { coefficient: 0.5 };
+    let law = Coulomb { strength: Strength::constant(0.5) };
     let laws = Laws { penalty: Some(4.0), friction: Some(&law), dt: 1.0, resolution: 0.0, load: None };
     let site = |slip: f64| Site {
         normal: SVector::from([0.0, 1.0]),
@@ -171,6 +184,7 @@ fn a_held_point_has_the_shear_of_its_slip(_: &SimpleCommunicator, _: &Path) {
         clearance: -1.0,
         drive: SVector::from([slip, 0.0]),
         elastic: SVector::zeros(),
+        slid: 0.0,
         moduli: Moduli { normal: 4.0, tangential: None },
         lengths: [1.0; 2],
     };

@@ -10,7 +10,8 @@ use crate::energy::Energy;
 use crate::output::Status;
 use crate::petsc;
 use crate::scene::{
-    Friction, Penalty, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance, shortest_step,
+    Coefficient, Friction, Law, Penalty, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance,
+    shortest_step,
 };
 use crate::solve::{Counts, Work};
 
@@ -33,16 +34,8 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
             _ => yes.push(format!("{place}viscoelastic memory: {arms} arm(s), constant Poisson ratio")),
         }
     }
-    match scene.friction {
-        Some(Friction::CoulombTanh { coefficient, regularisation }) => {
-            yes.push(format!("friction: f = {coefficient}, regularised by tanh over {regularisation} m/s"));
-        }
-        Some(Friction::CoulombElasticSlip { coefficient, elastic_slip }) => {
-            yes.push(format!("friction: f = {coefficient}, sticking up to an elastic slip of {elastic_slip} m"));
-        }
-        Some(Friction::Coulomb { coefficient }) => {
-            yes.push(format!("friction: f = {coefficient}, Coulomb's law itself"));
-        }
+    match &scene.friction {
+        Some(friction) => yes.push(friction_law(friction)),
         None => no.push("friction (symmetric solver)".to_owned()),
     }
     yes.push(format!(
@@ -62,6 +55,21 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
     }
     no.push("inertia, large strains, thermal effects".to_owned());
     (yes, no)
+}
+
+/// The coefficient of friction, and how it turns.
+fn friction_law(friction: &Friction) -> String {
+    let coefficient = match &friction.coefficient {
+        Coefficient::Number(number) => number.to_string(),
+        Coefficient::Formula(formula) => formula.clone(),
+    };
+    let limit = friction.shear_limit.map_or(String::new(), |limit| format!(", at most {limit} Pa"));
+    let turns = match friction.law {
+        Law::CoulombTanh { regularisation } => format!("regularised by tanh over {regularisation} m/s"),
+        Law::CoulombElasticSlip { elastic_slip } => format!("sticking up to an elastic slip of {elastic_slip} m"),
+        Law::Coulomb => "Coulomb's law itself".to_owned(),
+    };
+    format!("friction: f = {coefficient}{limit}, {turns}")
 }
 
 /// The penalty, and how much it softens a layer.

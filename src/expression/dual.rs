@@ -26,7 +26,7 @@ impl Dual {
     }
 
     /// f(g) from f's value and derivative at g: the chain rule.
-    fn chain(self, value: f64, derivative: f64) -> Self {
+    pub(super) fn chain(self, value: f64, derivative: f64) -> Self {
         Self { value, slope: times(derivative, self.slope) }
     }
 }
@@ -108,8 +108,8 @@ pub(super) const UNARY: [(&str, Unary); 19] = [
     ("round", |a| a.chain(a.value.round(), 0.0)),
 ];
 
-/// The functions of two arguments. `mod(a, b)` has the sign of b.
-pub(super) const BINARY: [(&str, Binary); 5] = [
+/// The functions of two arguments. `mod(a, b)` has the sign of b; `step(a, b)` is 1 where a >= b, else 0.
+pub(super) const BINARY: [(&str, Binary); 6] = [
     ("min", |a, b| if a.value == b.value { mean(a, b) } else { pick(a, b, a.value < b.value) }),
     ("max", |a, b| if a.value == b.value { mean(a, b) } else { pick(a, b, a.value > b.value) }),
     ("atan2", |y, x| {
@@ -124,6 +124,10 @@ pub(super) const BINARY: [(&str, Binary); 5] = [
     ("mod", |a, b| {
         let turns = (a.value / b.value).floor();
         Dual { value: a.value - b.value * turns, slope: a.slope - times(turns, b.slope) }
+    }),
+    ("step", |a, b| {
+        let apart = a.value - b.value;
+        Dual::constant(if apart.is_nan() { f64::NAN } else { f64::from(u8::from(apart >= 0.0)) })
     }),
 ];
 

@@ -2,13 +2,17 @@
 //!
 //! The usual conventions: `^` (or `**`) binds tightest and to the right, and tighter than a sign before it, so that
 //! `-x^2` is -(x^2) and `2^3^2` is 2^(3^2); `2^-x` is allowed; products before sums; nothing is implied between `2`
-//! and `x`. Numbers may have an exponent. Constants: `pi`, `e`.
+//! and `x`. Numbers may have an exponent. Constants: `pi`, `e`. Where tables are to be had, `table("file.csv", x)` is the curve
+//! through the points of one.
 
 mod dual;
 
 use std::fmt;
+use std::sync::Arc;
 
 pub use dual::Dual;
+
+use crate::table::Curve;
 
 use dual::{BINARY, Binary, UNARY, Unary, power};
 
@@ -40,7 +44,11 @@ enum Node {
     Variable(usize),
     Unary(Unary, Box<Node>),
     Binary(Binary, Box<[Node; 2]>),
+    Table(Arc<Curve>, Box<Node>),
 }
+
+/// How the curve of a table is come by; what is wrong where there is none.
+pub type Tables<'a> = &'a dyn Fn(&str) -> Result<Arc<Curve>, String>;
 
 /// Longer than any formula by hand, and a tree that no stack minds.
 const LONGEST: usize = 2000;
@@ -54,7 +62,19 @@ impl Expression {
     /// # Errors
     /// The first thing that is wrong, and where.
     pub fn parse(text: &str, variables: &[&str]) -> Result<Self, Fault> {
-        let mut reader = Reader { letters: text.chars().collect(), at: 0, variables, depth: 0 };
+        Self::read(text, variables, None)
+    }
+
+    /// Reads one that may have tables in it.
+    ///
+    /// # Errors
+    /// As for [`Self::parse`], and what is wrong with a table.
+    pub fn with_tables(text: &str, variables: &[&str], tables: Tables<'_>) -> Result<Self, Fault> {
+        Self::read(text, variables, Some(tables))
+    }
+
+    fn read(text: &str, variables: &[&str], tables: Option<Tables<'_>>) -> Result<Self, Fault> {
+        let mut reader = Reader { letters: text.chars().collect(), at: 0, variables, tables, depth: 0 };
         if reader.letters.len() > LONGEST {
             return Err(Fault { column: LONGEST, reason: format!("is longer than {LONGEST} characters") });
         }
@@ -73,6 +93,11 @@ impl Expression {
     pub fn at(&self, variables: &[Dual]) -> Dual {
         self.root.at(variables)
     }
+
+    /// Whether the variable of this index is in it.
+    pub fn has(&self, variable: usize) -> bool {
+        self.root.has(variable)
+    }
 }
 
 impl Node {
@@ -82,6 +107,20 @@ impl Node {
             Self::Variable(index) => variables[*index],
             Self::Unary(function, a) => function(a.at(variables)),
             Self::Binary(function, pair) => function(pair[0].at(variables), pair[1].at(variables)),
+            Self::Table(curve, a) => {
+                let a = a.at(variables);
+                let [value, slope] = curve.at(a.value);
+                a.chain(value, slope)
+            }
+        }
+    }
+
+    fn has(&self, variable: usize) -> bool {
+        match self {
+            Self::Constant(_) => false,
+            Self::Variable(index) => *index == variable,
+            Self::Unary(_, a) | Self::Table(_, a) => a.has(variable),
+            Self::Binary(_, pair) => pair.iter().any(|a| a.has(variable)),
         }
     }
 }
@@ -91,6 +130,7 @@ struct Reader<'a> {
     letters: Vec<char>,
     at: usize,
     variables: &'a [&'a str],
+    tables: Option<Tables<'a>>,
     depth: usize,
 }
 
@@ -214,6 +254,9 @@ impl Reader<'_> {
             "e" => return Ok(Node::Constant(std::f64::consts::E)),
             _ => {}
         }
+        if let (Some(tables), "table") = (self.tables, name.as_str()) {
+            return self.table(tables);
+        }
         let unary = UNARY.iter().find(|(known, _)| *known == name);
         let binary = BINARY.iter().find(|(known, _)| *known == name);
         if unary.is_none() && binary.is_none() {
@@ -233,6 +276,30 @@ impl Reader<'_> {
                 fault(format!("the function {name} takes {takes}, got {given}"))
             }
         }
+    }
+
+    /// What follows `table`: ("FILE", sum)
+    fn table(&mut self, tables: Tables<'_>) -> Result<Node, Fault> {
+        for letter in ['(', '"'] {
+            if self.peek() != Some(letter) {
+                return Err(self.fault("a table is written table(\"FILE\", v), its file in double quotes"));
+            }
+            self.at += 1;
+        }
+        let rest = &self.letters[self.at..];
+        let Some(length) = rest.iter().position(|letter| *letter == '"') else {
+            return Err(self.fault("a '\"' is missing after the name of the table's file"));
+        };
+        let name: String = rest[..length].iter().collect();
+        let curve = tables(&name).map_err(|reason| self.fault(reason))?;
+        self.at += length + 1;
+        if self.peek() != Some(',') {
+            return Err(self.fault("a \",\" and what the table is looked up at are missing"));
+        }
+        self.at += 1;
+        let argument = self.sum()?;
+        self.close()?;
+        Ok(Node::Table(curve, Box::new(argument)))
     }
 
     fn arguments(&mut self) -> Result<Vec<Node>, Fault> {

@@ -31,6 +31,7 @@ fn conventions_are_the_usual_ones() {
         ("hypot(3, x*2)", 5.0),
         ("atan2(x, x)*4/pi", 1.0),
         ("sign(-x)+floor(x/3)+ceil(x/3)+round(x/3)", 1.0),
+        ("step(x, 2) + step(1, x)*7", 1.0),
     ] {
         assert_eq!(at(text, 2.0).value, value, "{text}");
     }
@@ -60,6 +61,26 @@ fn slopes_at_kinks() {
     assert_eq!(at("x^2", 0.0), Dual { value: 0.0, slope: 0.0 });
     assert_eq!(at("(x-1)^1", 1.0), Dual { value: 0.0, slope: 1.0 });
     assert!(at("max(sqrt(-1), x)", 1.0).value.is_nan());
+}
+
+/// A table is a curve with its slope; without tables there is no such function, and what is wrong with one is said.
+#[test]
+fn tables_are_curves() {
+    let curve = Arc::new(Curve::new(vec![[0.0, 1.0], [2.0, 5.0]]).unwrap());
+    let tables = |name: &str| if name == "a b.csv" { Ok(curve.clone()) } else { Err(format!("no {name}")) };
+    let read = |text: &str| Expression::with_tables(text, &["x", "y"], &tables);
+    let expression = read("2*table(\"a b.csv\", x^2)").unwrap();
+    assert_eq!(expression.at(&[Dual::variable(0.5), Dual::constant(0.0)]), Dual { value: 3.0, slope: 4.0 });
+    assert!(expression.has(0) && !expression.has(1));
+    for (text, message) in [
+        ("table(\"c\", x)", "column 8: no c"),
+        ("table(x, 1)", "column 7: a table is written table(\"FILE\", v), its file in double quotes"),
+        ("table(\"c, x)", "column 8: a '\"' is missing after the name of the table's file"),
+        ("table(\"a b.csv\")", "column 16: a \",\" and what the table is looked up at are missing"),
+    ] {
+        assert_eq!(read(text).unwrap_err().to_string(), message, "{text}");
+    }
+    assert!(Expression::parse("table(\"c\", x)", &["x"]).is_err());
 }
 
 #[test]

@@ -1,25 +1,25 @@
 //! Coulomb's law itself.
 
-use super::{Circumstances, Law, Met, Shear};
+use super::{Circumstances, Law, Share, Strength};
 
-/// |q| = f p where the point slips; where it sticks, what it takes, up to that. Nothing is regularised: no creep, no elastic
-/// slip.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// |q| = B where the point slips; where it sticks, what it takes, up to B at no rate. Nothing is regularised: no creep, no
+/// elastic slip.
+#[derive(Debug, Clone)]
 pub struct Coulomb {
-    /// Coefficient of friction f, -.
-    pub coefficient: f64,
+    /// B
+    pub strength: Strength,
 }
 
 impl Law for Coulomb {
-    fn coefficient(&self) -> f64 {
-        self.coefficient
+    fn strength(&self) -> &Strength {
+        &self.strength
     }
 
-    /// At m = 0 the law says no more than |q| <= f p; this is the least.
-    fn shear(&self, Circumstances { pressure, .. }: Circumstances, slip: f64) -> Shear {
+    /// At m = 0 the law says no more than |q| <= B; this is the least.
+    fn share(&self, _at: Circumstances, slip: f64) -> Share {
         match slip > 0.0 {
-            true => Shear { shear: self.coefficient * pressure, by_slip: 0.0, by_pressure: self.coefficient },
-            false => Shear { shear: 0.0, by_slip: f64::INFINITY, by_pressure: 0.0 },
+            true => Share { value: 1.0, by_slip: 0.0 },
+            false => Share { value: 0.0, by_slip: f64::INFINITY },
         }
     }
 
@@ -29,15 +29,5 @@ impl Law for Coulomb {
 
     fn sticks(&self, _at: Circumstances, slip: f64) -> bool {
         slip == 0.0
-    }
-
-    /// A projection: sticks where the reach is within f p.
-    fn meet(&self, at: Circumstances, reach: f64, rho: f64) -> Met {
-        let bound = self.coefficient * at.pressure;
-        if reach <= bound {
-            return Met { slip: 0.0, shear: Shear { shear: reach, ..self.shear(at, 0.0) } };
-        }
-        let slip = (reach - bound) / rho;
-        Met { slip, shear: self.shear(at, slip) }
     }
 }

@@ -1,40 +1,35 @@
 //! Coulomb's law regularised by the slip.
 
-use super::{Circumstances, Law, Shear};
+use super::{Circumstances, Lasting, Law, Share, Strength};
 
 /// Coulomb's law with an elastic part e of the slip, at most gamma long:
 ///
 /// ```text
-/// |q| = f p min(m/gamma, 1),    m = |e_n + slip of the step|,    e = its direction times min(m, gamma);    m < gamma: sticks
+/// |q| = B min(m/gamma, 1),    m = |e_n + slip of the step|,    e = its direction times min(m, gamma);    m < gamma: sticks
 /// ```
 ///
 /// Rate-independent: return mapping (Simo and Hughes, Computational Inelasticity, 1.4; Wriggers, Computational Contact
-/// Mechanics, 5.2) with the tangential stiffness f p/gamma. That it goes with the pressure, as in Abaqus, is a choice:
+/// Mechanics, 5.2) with the tangential stiffness B/gamma. That it goes with the pressure, as in Abaqus, is a choice:
 /// the slip that a sticking point is let do is then the same stated length all over the contact, up to its edges; with a
 /// constant stiffness it would go with the pressure, which no scene knows beforehand. In exchange the traction of
 /// a sticking point goes with its pressure until it slips back by what is too much, again gamma at most.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct ElasticSlip {
-    /// Coefficient of friction f, -.
-    pub coefficient: f64,
+    /// B
+    pub strength: Strength,
     /// gamma, m.
     pub elastic_slip: f64,
 }
 
 impl Law for ElasticSlip {
-    fn coefficient(&self) -> f64 {
-        self.coefficient
+    fn strength(&self) -> &Strength {
+        &self.strength
     }
 
-    fn shear(&self, at: Circumstances, slip: f64) -> Shear {
-        let bound = self.coefficient * at.pressure;
+    fn share(&self, at: Circumstances, slip: f64) -> Share {
         match self.sticks(at, slip) {
-            true => Shear {
-                shear: bound * (slip / self.elastic_slip),
-                by_slip: bound / self.elastic_slip,
-                by_pressure: self.coefficient * (slip / self.elastic_slip),
-            },
-            false => Shear { shear: bound, by_slip: 0.0, by_pressure: self.coefficient },
+            true => Share { value: slip / self.elastic_slip, by_slip: 1.0 / self.elastic_slip },
+            false => Share { value: 1.0, by_slip: 0.0 },
         }
     }
 
@@ -52,5 +47,14 @@ impl Law for ElasticSlip {
 
     fn elastic(&self, slip: f64) -> f64 {
         slip.min(self.elastic_slip)
+    }
+
+    /// What is not elastic.
+    fn lasting(&self, slip: f64) -> Lasting {
+        let length = slip - self.elastic_slip;
+        match length > 0.0 {
+            true => Lasting { length, by_slip: 1.0 },
+            false => Lasting { length: 0.0, by_slip: 0.0 },
+        }
     }
 }

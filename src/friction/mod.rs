@@ -1,18 +1,21 @@
 //! Friction laws: pressure and slip in, shear traction and its derivatives out, all of them scalars.
 //!
 //! A point slips by a vector s over a step: what it slips in the step, and before that what the law still holds elastically.
-//! With m = |s| >= 0 a law gives |q|(m, p), which does not fall with m; the traction is q = |q| s/m, whatever the dimension. A
-//! new law is a file with an `impl Law`.
+//! With m = |s| >= 0 a law gives |q|(m, p) = B phi, B what the point bears ([`Strength`]) and phi what share of it the slip calls
+//! up, from 0 to 1, which does not fall with m; B may. The traction is q = |q| s/m, whatever the dimension. A new law is a file with
+//! an `impl Law`.
 
 mod coulomb;
 mod coulomb_tanh;
 mod elastic_slip;
+mod strength;
 
 pub use coulomb::Coulomb;
 pub use coulomb_tanh::CoulombTanh;
 pub use elastic_slip::ElasticSlip;
+pub use strength::{Bound, Coefficient, Lasting, Strength, VARIABLES};
 
-/// What a point answers in: its pressure and its step.
+/// What a point answers in: its pressure, its step and its past.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Circumstances {
     /// p >= 0, Pa.
@@ -21,6 +24,17 @@ pub struct Circumstances {
     pub dt: f64,
     /// Slips, m, that are too short to tell apart; 0 where the slip is known to all its digits.
     pub resolution: f64,
+    /// What the point has slid, without what is elastic, up to the step, m.
+    pub slid: f64,
+}
+
+/// phi and its derivative.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Share {
+    /// -
+    pub value: f64,
+    /// d phi/dm, 1/m, at least 0; infinite where the law lets nothing slip.
+    pub by_slip: f64,
 }
 
 /// The shear traction and its derivatives.
@@ -28,7 +42,7 @@ pub struct Circumstances {
 pub struct Shear {
     /// |q|, Pa.
     pub shear: f64,
-    /// d|q|/dm at constant pressure, Pa/m, at least 0; infinite where the law lets nothing slip.
+    /// d|q|/dm at constant pressure, Pa/m; infinite where the law lets nothing slip.
     pub by_slip: f64,
     /// d|q|/dp at constant slip.
     pub by_pressure: f64,
@@ -45,13 +59,13 @@ pub struct Met {
 
 /// A friction law.
 pub trait Law: std::fmt::Debug + Send + Sync {
-    /// The coefficient of friction f, -: |q| <= f p.
-    fn coefficient(&self) -> f64;
+    /// B
+    fn strength(&self) -> &Strength;
 
-    /// |q| of a point that slips by `slip` = m >= 0, m.
-    fn shear(&self, at: Circumstances, slip: f64) -> Shear;
+    /// phi of a point that slips by `slip` = m >= 0, m.
+    fn share(&self, at: Circumstances, slip: f64) -> Share;
 
-    /// The m >= 0, m, over which |q| comes near f p: what a step has to tell apart.
+    /// The m >= 0, m, over which |q| comes near B: what a step has to tell apart.
     fn sharpness(&self, dt: f64) -> f64;
 
     /// Whether a point that slips by `slip` sticks.
@@ -67,27 +81,73 @@ pub trait Law: std::fmt::Debug + Send + Sync {
         0.0
     }
 
-    /// The m >= 0 where |q|(m) + rho m = `reach` (Pa), for rho > 0, Pa/m: the only one, because |q| does not fall.
-    ///
-    /// By Newton's method from below, which does not overshoot where |q| is concave, kept between bounds.
+    /// How much of the slip m is for good: what B knows as rate and distance.
+    fn lasting(&self, slip: f64) -> Lasting {
+        Lasting { length: slip, by_slip: 1.0 }
+    }
+
+    /// B of a point that slips by `slip`.
+    fn bound(&self, at: Circumstances, slip: f64) -> Bound {
+        self.strength().at(at, self.lasting(slip))
+    }
+
+    /// |q| of a point that slips by `slip`.
+    fn shear(&self, at: Circumstances, slip: f64) -> Shear {
+        let (Share { value, by_slip }, bound) = (self.share(at, slip), self.bound(at, slip));
+        let rise = if by_slip.is_infinite() { by_slip } else { bound.value * by_slip + bound.by_slip * value };
+        Shear { shear: bound.value * value, by_slip: rise, by_pressure: bound.by_pressure * value }
+    }
+
+    /// The m >= 0 where |q|(m) + rho m = `reach` (Pa), for rho > 0, Pa/m: the only one where |q| falls less steeply than rho
+    /// rises. A law that lets nothing slip sticks up to B.
     fn meet(&self, at: Circumstances, reach: f64, rho: f64) -> Met {
-        const MOST: usize = 100;
-        let bound = self.coefficient() * at.pressure;
-        let steepest = self.shear(at, 0.0).by_slip;
-        let mut slip = ((reach - bound) / rho).max(reach / (steepest + rho));
-        let mut shear = self.shear(at, slip);
-        for _ in 0..MOST {
-            let more = (reach - shear.shear - rho * slip) / (shear.by_slip + rho);
-            let next = (slip + more).max(0.0).min(reach / rho);
-            // Newton's steps are upward until round-off turns them; a number that is none ends it, too.
-            if next.partial_cmp(&slip) != Some(std::cmp::Ordering::Greater) {
-                break;
-            }
-            slip = next;
-            shear = self.shear(at, slip);
+        let (still, bound) = (self.shear(at, 0.0), self.bound(at, 0.0).value);
+        if still.by_slip.is_infinite() && reach <= bound {
+            return Met { slip: 0.0, shear: Shear { shear: reach, ..still } };
         }
+        let least = ((reach - bound) / rho).max(reach / (still.by_slip + rho));
+        let slip = match self.strength().varies() {
+            false => from_below(self, (at, reach, rho), least),
+            true => between(self, (at, reach, rho), least.min(reach / rho)),
+        };
+        let (shear, bound) = (self.shear(at, slip), self.bound(at, slip).value);
         Met { slip, shear: Shear { shear: met(reach, bound, rho * slip, shear.shear), ..shear } }
     }
+}
+
+/// Evaluations for one point at most.
+const MOST: usize = 100;
+
+/// By Newton's method from below, which does not overshoot where |q| is concave.
+fn from_below(law: &(impl Law + ?Sized), (at, reach, rho): (Circumstances, f64, f64), mut slip: f64) -> f64 {
+    for _ in 0..MOST {
+        let shear = law.shear(at, slip);
+        let more = (reach - shear.shear - rho * slip) / (shear.by_slip + rho);
+        let next = (slip + more).max(0.0).min(reach / rho);
+        // Newton's steps are upward until round-off turns them; a number that is none ends it, too.
+        if next.partial_cmp(&slip) != Some(std::cmp::Ordering::Greater) {
+            break;
+        }
+        slip = next;
+    }
+    slip
+}
+
+/// By Newton's method between bounds that close in, halving them where it leaves them.
+fn between(law: &(impl Law + ?Sized), (at, reach, rho): (Circumstances, f64, f64), mut slip: f64) -> f64 {
+    let [mut low, mut high] = [0.0, reach / rho];
+    for _ in 0..MOST {
+        let shear = law.shear(at, slip);
+        let excess = shear.shear + rho * slip - reach;
+        *if excess < 0.0 { &mut low } else { &mut high } = slip;
+        let newton = slip - excess / (shear.by_slip + rho);
+        let next = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
+        if next.is_nan() || (next - slip).abs() <= f64::EPSILON * slip {
+            break;
+        }
+        slip = next;
+    }
+    slip
 }
 
 /// |q| to all digits: of reach - rho m none are left where the point slips, and of the law's own where it sticks.
@@ -96,65 +156,4 @@ fn met(reach: f64, bound: f64, spring: f64, law: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const AT: Circumstances = Circumstances { pressure: 3.0, dt: 0.1, resolution: 0.0 };
-
-    fn laws() -> [Box<dyn Law>; 3] {
-        [
-            Box::new(CoulombTanh { coefficient: 0.2, regularisation: 1e-6 }),
-            Box::new(ElasticSlip { coefficient: 0.2, elastic_slip: 1e-7 }),
-            Box::new(Coulomb { coefficient: 0.2 }),
-        ]
-    }
-
-    /// |q| <= f p, does not fall, and is finite at any slip.
-    #[test]
-    fn bounded_by_coulomb_and_monotone() {
-        for law in laws() {
-            let mut last = 0.0;
-            for slip in [0.0, 1e-300, 1e-9, 1e-7, 1e-3, 1.0, 1e9, f64::MAX] {
-                let Shear { shear, by_slip, .. } = law.shear(AT, slip);
-                assert!((last..=law.coefficient() * 3.0).contains(&shear) && by_slip >= 0.0, "{law:?} {slip}");
-                last = shear;
-            }
-        }
-    }
-
-    /// The derivatives against central differences, sticking and slipping.
-    #[test]
-    fn derivatives_are_those_of_the_traction() {
-        for law in laws() {
-            for slip in [4e-8, 7e-8, 2e-7, 5e-7] {
-                let at = |dp: f64, dm: f64| law.shear(Circumstances { pressure: 3.0 + dp, ..AT }, slip + dm).shear;
-                let exact = law.shear(AT, slip);
-                let by_pressure = (at(1e-3, 0.0) - at(-1e-3, 0.0)) / 2e-3;
-                let by_slip = (at(0.0, 1e-12) - at(0.0, -1e-12)) / 2e-12;
-                assert!((by_pressure - exact.by_pressure).abs() < 1e-9, "{law:?} {slip}");
-                assert!((by_slip - exact.by_slip).abs() < 1e-3 * 6e6, "{law:?} {slip} {by_slip}");
-            }
-        }
-    }
-
-    /// Where law and spring meet: |q|(m) + rho m = S to round-off, for springs and pulls of any size.
-    #[test]
-    fn law_and_spring_meet() {
-        for law in laws() {
-            for rho in [1e-6, 1.0, 1e6, 1e12] {
-                for reach in [0.0, 1e-12, 1e-3, 0.3, 0.6 - 1e-9, 0.6 + 1e-9, 2.0, 1e9] {
-                    let Met { slip, shear } = law.meet(AT, reach, rho);
-                    let left = shear.shear + rho * slip - reach;
-                    assert!(slip >= 0.0 && left.abs() <= 4e-15 * reach, "{law:?} {rho:e} {reach:e}: {left:e}");
-                    let again = law.shear(AT, slip).shear;
-                    let digits = 1e-14 * reach / rho * law.shear(AT, slip).by_slip;
-                    let exact = slip == 0.0 && law.shear(AT, 0.0).by_slip.is_infinite();
-                    assert!(
-                        exact || (again - shear.shear).abs() <= 1e-14 * reach.max(0.6) + digits,
-                        "{law:?} {rho:e} {reach:e}"
-                    );
-                }
-            }
-        }
-    }
-}
+mod tests;

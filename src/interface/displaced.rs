@@ -80,14 +80,17 @@ impl Interface {
     pub fn displaced(&mut self, placement: Placement, surface: &Surface) -> Result<Vec<State<2>>> {
         let answers = self.answers(placement, surface)?;
         let state = |((relative, traction), before): ((Relative<2>, Traction<2>), &State<2>)| {
-            let (mut stuck, mut of_step) = (Vector2::zeros(), relative.slip);
+            let Traction { pressure, shear, sticks, .. } = traction;
+            let (overlap, slip) = (relative.overlap, relative.slip);
+            let mut state = State { pressure, shear, overlap, slip, sticks, slid: before.slid, ..State::default() };
             if let Some(law) = self.friction() {
-                of_step -= before.elastic(law);
-                if traction.pressure > 0.0 {
-                    stuck = before.stuck_after(law, traction.sticks, (relative.slip, of_step));
+                state.slip -= before.elastic(law);
+                if pressure > 0.0 {
+                    state.stuck = before.stuck_after(law, sticks, (slip, state.slip));
+                    state.slid += law.lasting(slip.norm()).length;
                 }
             }
-            State::of(&traction, relative.overlap, of_step, stuck)
+            state
         };
         Ok(answers.into_iter().zip(&self.accepted).map(state).collect())
     }
@@ -132,7 +135,7 @@ impl Interface {
         let law = self.friction();
         let Placement { approach, sliding_rate, approach_rate, dt, resolution, .. } = placement;
         let way = Vector2::new(sliding_rate, -approach_rate) * dt;
-        let at = Circumstances { pressure: 0.0, dt, resolution: resolution * dt };
+        let at = |slid| Circumstances { pressure: 0.0, dt, resolution: resolution * dt, slid };
         let answer = |(i, point): (usize, &super::Point<2>)| {
             let normal = point.normal;
             let (end, beginning) = (self.points.at(i, &surface.end), self.points.at(i, &surface.beginning));
@@ -140,7 +143,7 @@ impl Interface {
             let elastic = law.map_or(Vector2::zeros(), |law| self.accepted[i].elastic(law));
             let overlap = end.dot(&normal) - self.clearance(i, approach) * normal.y;
             let relative = Relative { overlap, slip: past - normal * normal.dot(&past) + elastic, normal };
-            (relative, Traction::new(relative, penalty, law, at))
+            (relative, Traction::new(relative, penalty, law, at(self.accepted[i].slid)))
         };
         let answers: Vec<_> = self.points.all().iter().enumerate().map(answer).collect();
         self.count_laws(answers.iter().filter(|(_, traction)| traction.pressure > 0.0).count());

@@ -2,7 +2,6 @@
 
 use nalgebra::SVector;
 
-use crate::element::mpjr::Traction;
 use crate::friction::Law;
 
 /// A point at an accepted state.
@@ -18,6 +17,8 @@ pub struct State<const D: usize> {
     pub slip: SVector<f64, D>,
     /// By how much the point has slipped while it was to stick, m: what the regularisation lets it do.
     pub stuck: SVector<f64, D>,
+    /// The slip for good of all steps in contact, m.
+    pub slid: f64,
     /// Whether it sticks.
     pub sticks: bool,
 }
@@ -25,13 +26,13 @@ pub struct State<const D: usize> {
 impl<const D: usize> Default for State<D> {
     fn default() -> Self {
         let none = SVector::zeros();
-        Self { pressure: 0.0, shear: none, overlap: 0.0, slip: none, stuck: none, sticks: false }
+        Self { pressure: 0.0, shear: none, overlap: 0.0, slip: none, stuck: none, slid: 0.0, sticks: false }
     }
 }
 
 impl<const D: usize> State<D> {
     /// How many numbers it is in a list.
-    pub const NUMBERS: usize = 3 + 3 * D;
+    pub const NUMBERS: usize = 4 + 3 * D;
 
     /// The elastic part of the slip that the next step begins with, m.
     pub fn elastic(&self, law: &dyn Law) -> SVector<f64, D> {
@@ -60,7 +61,7 @@ impl<const D: usize> State<D> {
 
     /// As numbers.
     pub fn write(&self, list: &mut Vec<f64>) {
-        list.extend([self.pressure, self.overlap, f64::from(u8::from(self.sticks))]);
+        list.extend([self.pressure, self.overlap, self.slid, f64::from(u8::from(self.sticks))]);
         for vector in [&self.shear, &self.slip, &self.stuck] {
             list.extend(vector.iter());
         }
@@ -68,20 +69,15 @@ impl<const D: usize> State<D> {
 
     /// From [`Self::NUMBERS`] numbers.
     pub fn read(list: &[f64]) -> Self {
-        let vector = |i: usize| SVector::from_column_slice(&list[3 + i * D..][..D]);
+        let vector = |i: usize| SVector::from_column_slice(&list[4 + i * D..][..D]);
         Self {
             pressure: list[0],
             overlap: list[1],
-            sticks: list[2] != 0.0,
+            slid: list[2],
+            sticks: list[3] != 0.0,
             shear: vector(0),
             slip: vector(1),
             stuck: vector(2),
         }
-    }
-
-    /// Under tractions that displacements decide.
-    pub fn of(traction: &Traction<D>, overlap: f64, slip: SVector<f64, D>, stuck: SVector<f64, D>) -> Self {
-        let Traction { pressure, shear, sticks, .. } = *traction;
-        Self { pressure, shear, overlap, slip, stuck, sticks }
     }
 }

@@ -2,12 +2,12 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
-use crate::friction::{CoulombTanh, ElasticSlip};
+use crate::friction::{CoulombTanh, ElasticSlip, Strength};
 use crate::mesh::{Layer, Sides};
 use crate::profile::{Elevation, Harmonic, Wedge};
 
 fn interface(quadrature: Quadrature, sides: Sides) -> Interface {
-    with_law(quadrature, sides, Box::new(CoulombTanh { coefficient: 0.3, regularisation: 0.02 }))
+    with_law(quadrature, sides, Box::new(CoulombTanh { strength: Strength::constant(0.3), regularisation: 0.02 }))
 }
 
 fn with_law(quadrature: Quadrature, sides: Sides, friction: Box<dyn Law>) -> Interface {
@@ -108,7 +108,7 @@ fn tangent_is_the_derivative_of_the_residual() {
 #[test]
 fn tangent_with_memory() {
     for (quadrature, sides) in [(Quadrature::Nodal, Sides::Free), (Quadrature::Gauss, Sides::Periodic)] {
-        let law = ElasticSlip { coefficient: 0.3, elastic_slip: 5.5e-3 };
+        let law = ElasticSlip { strength: Strength::constant(0.3), elastic_slip: 5.5e-3 };
         let mut interface = with_law(quadrature, sides, Box::new(law));
         let surface = surface(interface.face.x.len(), (0, 0.0));
         let totals = commit(&mut interface, placement(), &surface);

@@ -4,7 +4,7 @@
 //! have been forced to the disk: at every moment the last whole checkpoint and all rows before it are there.
 //!
 //! The format is this program's own, so that every write is seen to succeed: the HDF5 library, whose files are for
-//! other programs to read, does not survive a disk that fills up while it writes. A line `mpjr checkpoint 4`, the
+//! other programs to read, does not survive a disk that fills up while it writes. A line `mpjr checkpoint 5`, the
 //! length of a TOML header, the header (scene, `started`, names and lengths of the lists), the numbers as 8 bytes
 //! each, least significant byte first, and a checksum of all that.
 
@@ -20,7 +20,7 @@ use crate::checksum::checksum;
 use crate::error::{Error, Result};
 
 /// The number goes up when what a checkpoint holds changes its meaning.
-const MARK: &[u8] = b"mpjr checkpoint 4\n";
+const MARK: &[u8] = b"mpjr checkpoint 5\n";
 /// What the mark of every format begins with.
 pub(super) const ANY_MARK: &[u8] = b"mpjr checkpoint ";
 

@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use super::{
-    Arm, Extend, Friction, Indenter, Layer, Material, Memory, Phase, Quadrature, Scene, Sides, Stepping, Strategy,
-    When, keys,
+    Arm, Extend, Indenter, Law, Layer, Material, Memory, Phase, Quadrature, Scene, Sides, Stepping, Strategy, When,
+    keys,
 };
 use crate::error::{Error, Result};
 
@@ -207,8 +207,8 @@ fn exact_laws(scene: &Scene) -> Check {
         );
         return fail("contact.penalty", reason);
     }
-    match scene.friction {
-        Some(Friction::Coulomb { .. }) => {
+    match scene.friction.as_ref().map(|friction| friction.law) {
+        Some(Law::Coulomb) => {
             let laws = "\"coulomb_elastic_slip\" (an elastic_slip of 1e-3 times coefficient times approach leaves a thousandth) or \"coulomb_tanh\"";
             fail("friction.law", format!("must be {laws} here; {instead}"))
         }

@@ -1,21 +1,63 @@
-//! Materials from files: `material = { file = "material.toml" }`.
+//! What a scene takes from other files, so that its table holds it in full: materials, `material = { file = "material.toml" }`, and
+//! the tables that the coefficient of friction names.
 
 use std::path::Path;
 
 use toml::{Table, Value};
 
+use super::friction::tables_in;
 use super::keys::{self, Section};
 use super::read::{self, material};
 use crate::error::{Error, Result};
 use crate::input;
+use crate::table::{self as numbers, Fault};
 
 /// How the text of a file is come by: on one process by opening it, on several from the one that did.
 pub type Load<'a> = &'a dyn Fn(&Path) -> Result<String>;
 
-/// Replaces every `file` of a scene's materials by what the file says, so that the table holds the materials in full.
-/// Paths are relative to the scene `file`. The file is the `[material]` table of a scene, whole; the keys beside
-/// `file` go before the same keys in it.
+/// Puts into the table of a scene what it takes from other files. Paths are relative to the scene `file`.
 pub fn include(table: &mut Table, file: &Path, load: Load) -> Result<()> {
+    materials(table, file, load)?;
+    match table.get_mut("friction") {
+        Some(Value::Table(friction)) => tables(friction, file, load),
+        _ => Ok(()),
+    }
+}
+
+/// The tables that the coefficient of friction names and that are not there yet: their first two columns.
+fn tables(friction: &mut Table, scene: &Path, load: Load) -> Result<()> {
+    const KEY: &str = "friction.coefficient";
+    let Some(formula) = friction.get("coefficient").and_then(Value::as_str) else { return Ok(()) };
+    for name in tables_in(formula) {
+        let Value::Table(tables) = friction.entry("tables").or_insert_with(|| Value::Table(Table::new())) else {
+            // What it is instead is said where it is read.
+            return Ok(());
+        };
+        if tables.contains_key(&name) {
+            continue;
+        }
+        let text = load_beside(&name, (scene, KEY), load)?;
+        let wrong = |fault: Fault| Error::scene(scene, KEY, format!("{name}: {fault}"));
+        let columns = numbers::Table::read(text.as_bytes()).and_then(|table| table.columns(&[0, 1])).map_err(wrong)?;
+        let points = columns.rows.into_iter().map(|row| row.values.into()).collect();
+        tables.insert(name, Value::Array(points));
+    }
+    Ok(())
+}
+
+/// The text of the file `name` beside the scene, which a key names.
+fn load_beside(name: &str, (scene, key): (&Path, &str), load: Load) -> Result<String> {
+    load(&scene.parent().unwrap_or(Path::new("")).join(name)).map_err(|error| match error {
+        Error::File { file, reason } => {
+            Error::File { file, reason: format!("{reason} ({key} of {})", scene.display()) }
+        }
+        other => other,
+    })
+}
+
+/// Replaces every `file` of a scene's materials by what the file says. The file is the `[material]` table of a scene, whole; the
+/// keys beside `file` go before the same keys in it.
+fn materials(table: &mut Table, file: &Path, load: Load) -> Result<()> {
     match table.get_mut("material") {
         Some(Value::Table(material)) => expand(material, "material", file, load),
         Some(Value::Array(materials)) => {
@@ -56,12 +98,7 @@ fn expand(table: &mut Table, path: &str, scene: &Path, load: Load) -> Result<()>
         return Err(Error::scene(scene, key, reason));
     }
     let found = scene.parent().unwrap_or(Path::new("")).join(&name);
-    let text = load(&found).map_err(|error| match error {
-        Error::File { file, reason } => {
-            Error::File { file, reason: format!("{reason} ({key} of {})", scene.display()) }
-        }
-        other => other,
-    })?;
+    let text = load_beside(&name, (scene, &key), load)?;
     let mut material = whole(&text, &found).map_err(|error| match error {
         Error::Scene { key: inner, reason, .. } if inner.is_empty() => {
             Error::scene(scene, &key, format!("{name}: {reason}"))

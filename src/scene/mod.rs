@@ -5,6 +5,7 @@
 
 mod checks;
 mod differences;
+mod friction;
 mod include;
 mod indenter;
 mod keys;
@@ -21,6 +22,7 @@ use serde::Serialize;
 
 pub use checks::whole_periods;
 pub use differences::differences;
+pub use friction::{Coefficient, Friction, Law};
 pub use include::{Load, include, open};
 pub use indenter::{Detrend, Extend, Indenter, Reading, Rms, Seam};
 pub(crate) use keys::nearest;
@@ -220,43 +222,6 @@ pub enum Quadrature {
     Nodal,
     /// Two Gauss points.
     Gauss,
-}
-
-/// The friction law.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(tag = "law", rename_all = "snake_case")]
-pub enum Friction {
-    /// q = coefficient p tanh(slip_rate / regularisation), Eq. (4); coefficient >= 0, regularisation > 0.
-    CoulombTanh {
-        /// -
-        coefficient: f64,
-        /// m/s
-        regularisation: f64,
-    },
-    /// q = coefficient p e/elastic_slip, e the elastic part of the slip, at most elastic_slip either way; coefficient
-    /// >= 0, elastic_slip > 0.
-    CoulombElasticSlip {
-        /// -
-        coefficient: f64,
-        /// m
-        elastic_slip: f64,
-    },
-    /// q = coefficient p where a point slips, and up to that where it sticks; coefficient >= 0.
-    Coulomb {
-        /// -
-        coefficient: f64,
-    },
-}
-
-impl Friction {
-    /// The coefficient of friction.
-    pub fn coefficient(&self) -> f64 {
-        match *self {
-            Self::CoulombTanh { coefficient, .. }
-            | Self::CoulombElasticSlip { coefficient, .. }
-            | Self::Coulomb { coefficient } => coefficient,
-        }
-    }
 }
 
 /// One phase of the loading history.

@@ -17,9 +17,9 @@ pub(super) fn apply(table: &mut Table, overrides: &[String], file: &Path) -> Res
     Ok(())
 }
 
-/// Whether an override is of a material as a whole or of its file, and so decides what other keys there are.
-pub(super) fn names_material(typed: &str) -> bool {
-    split(typed).is_ok_and(|(path, _)| is_of_material(path))
+/// Whether an override may name a file, and so decides what other keys there are.
+pub(super) fn names_file(typed: &str) -> bool {
+    split(typed).is_ok_and(|(path, _)| is_of_material(path) || matches!(path, "friction" | "friction.coefficient"))
 }
 
 /// Whether the path is that of a material as a whole or of its file.

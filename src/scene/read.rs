@@ -2,6 +2,7 @@
 //! is in `checks`.
 
 mod body;
+mod friction;
 mod indenter;
 pub(super) mod material;
 pub(super) mod phase;
@@ -12,8 +13,8 @@ use toml::Table;
 
 use super::keys::{self, Quantity, Section};
 use super::{
-    Body, Contact, Friction, Load, Material, Output, Penalty, Phase, Quadrature, Scene, Solver, Source, Strategy, When,
-    checks, include, overrides, penalty_for, shortest_step,
+    Body, Contact, Load, Material, Output, Penalty, Phase, Quadrature, Scene, Solver, Source, Strategy, When, checks,
+    include, overrides, penalty_for, shortest_step,
 };
 use crate::error::{Error, Result};
 
@@ -27,11 +28,11 @@ pub fn read(text: &str, source: &Source) -> Result<Scene> {
 
 /// Reads and checks a scene whose other files are come by with `load`, which all ranks call in the same order.
 ///
-/// Overrides that name the file of a material act before it is read, all others after, on what it says.
+/// Overrides that may name a file act before it is read, all others after, on what it says.
 pub fn read_with(text: &str, source: &Source, load: Load) -> Result<Scene> {
     let Source { file, overrides: typed } = source;
     let mut table = parse(text, file)?;
-    let (files, others): (Vec<_>, Vec<_>) = typed.iter().cloned().partition(|typed| overrides::names_material(typed));
+    let (files, others): (Vec<_>, Vec<_>) = typed.iter().cloned().partition(|typed| overrides::names_file(typed));
     let blame = |error| overrides::blame(error, typed);
     overrides::apply(&mut table, &files, file)?;
     include::include(&mut table, file, load).map_err(blame)?;
@@ -90,7 +91,7 @@ pub fn from_table(table: &Table, file: &Path) -> Result<Scene> {
     let mut scene = Scene {
         indenter: indenter::read(&root.section("indenter")?)?,
         contact: contact(&root.section("contact")?, &body, &materials, &phases)?,
-        friction: root.optional_section("friction")?.as_ref().map(friction).transpose()?,
+        friction: root.optional_section("friction")?.as_ref().map(friction::read).transpose()?,
         phases,
         solver: solver(solver_section.as_ref(), preset)?,
         output: output(root.optional_section("output")?.as_ref())?,
@@ -154,32 +155,6 @@ fn penalty(section: &Section, body: &Body, materials: &[Material], phases: &[Pha
         (None, None) if augmented == Some(false) => Err(section.missing("penalty", "it in Pa/m, or tolerance")),
         (None, None) => Ok(None),
     }
-}
-
-fn friction(section: &Section) -> Result<Friction> {
-    const COEFFICIENT: Quantity = Quantity { what: "a friction coefficient, at least 0", accepts: |f| f >= 0.0 };
-    const REGULARISATION: Quantity = Quantity::positive("a positive slip rate in m/s");
-    const ELASTIC_SLIP: Quantity = Quantity::positive("a positive length in m");
-
-    // The law decides which keys there are; where it is absent, perhaps it is misspelt.
-    if !section.has("law") {
-        section.only(&["law", "coefficient", "regularisation", "elastic_slip"])?;
-    }
-    let laws = [
-        ("coulomb", None),
-        ("coulomb_tanh", Some(("regularisation", REGULARISATION))),
-        ("coulomb_elastic_slip", Some(("elastic_slip", ELASTIC_SLIP))),
-    ];
-    let sharpness = section.choice("law", &laws, &[])?;
-    section.only(&["law", "coefficient"].into_iter().chain(sharpness.map(|(key, _)| key)).collect::<Vec<_>>())?;
-    let coefficient = section.number("coefficient", COEFFICIENT)?;
-    Ok(match sharpness {
-        None => Friction::Coulomb { coefficient },
-        Some((key @ "elastic_slip", what)) => {
-            Friction::CoulombElasticSlip { coefficient, elastic_slip: section.number(key, what)? }
-        }
-        Some((key, what)) => Friction::CoulombTanh { coefficient, regularisation: section.number(key, what)? },
-    })
 }
 
 /// What a scene leaves to a preset.

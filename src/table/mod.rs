@@ -3,6 +3,7 @@
 //! It knows nothing of what the columns mean. Lines of titles and units before the numbers, separators, decimal commas
 //! and encodings are found out; points without a value are left out and counted; what is wrong has its line.
 
+mod curve;
 mod encoding;
 mod format;
 mod titles;
@@ -13,6 +14,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::str::FromStr;
 
+pub use curve::Curve;
 pub use unit::{Quantity, Unit};
 
 use self::format::{Cell, Shape};

@@ -8,6 +8,7 @@
 mod appendix_a;
 mod half_space;
 mod kernel;
+mod load;
 mod relaxation;
 mod setting;
 mod sliding;
@@ -41,14 +42,14 @@ pub struct Case {
 /// Something to be solved.
 pub enum Subject {
     /// A layer by its numbers.
-    Layer(Setting),
+    Layer(Box<Setting>),
     /// A scene and the .msh file that it names.
     Scene(Box<Scene>, &'static [u8]),
 }
 
 impl From<Setting> for Subject {
     fn from(setting: Setting) -> Self {
-        Self::Layer(setting)
+        Self::Layer(Box::new(setting))
     }
 }
 
@@ -175,6 +176,7 @@ pub fn cases(quick: bool) -> Result<Vec<Case>> {
     list.extend(relaxation::cases(quick));
     list.extend(steady::cases(quick));
     list.extend(sliding::cases(quick));
+    list.extend(load::cases(quick));
     Ok(list)
 }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use crate::error::{Error, Result};
 use crate::oracle::transient::{self, Update};
 use crate::oracle::{Harmonic, Layer, Moduli, PoissonRule, Solid, steady};
-use crate::scene::{self, Friction, Scene, Source};
+use crate::scene::{self, Friction, Law, Scene, Source};
 
 /// A periodic layer, an indenter and its motion. Lengths in m, stresses in Pa.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,8 +51,10 @@ pub struct Phase {
     pub duration: f64,
     /// Equal steps.
     pub steps: usize,
-    /// Approach at its end, m.
+    /// Approach at its end, m; where a force is held, it is what that takes.
     pub approach: f64,
+    /// The force at its end, N/m, where that is held.
+    pub force: Option<f64>,
     /// Of the indenter along +x, m/s.
     pub velocity: f64,
 }
@@ -60,12 +62,17 @@ pub struct Phase {
 impl Phase {
     /// To an approach, without sliding.
     pub fn press(duration: f64, steps: usize, approach: f64) -> Self {
-        Self { duration, steps, approach, velocity: 0.0 }
+        Self { duration, steps, approach, force: None, velocity: 0.0 }
+    }
+
+    /// To a force, N/m, without sliding.
+    pub fn load(duration: f64, steps: usize, force: f64) -> Self {
+        Self { force: Some(force), ..Self::press(duration, steps, 0.0) }
     }
 
     /// Over a distance at a held approach.
     pub fn slide(velocity: f64, distance: f64, steps: usize, approach: f64) -> Self {
-        Self { duration: distance / velocity.abs(), steps, approach, velocity }
+        Self { duration: distance / velocity.abs(), steps, approach, force: None, velocity }
     }
 }
 
@@ -84,7 +91,7 @@ const RIGID: f64 = 1e10;
 
 /// Friction regularised by the slip rate, m/s.
 pub fn tanh(coefficient: f64, regularisation: f64) -> Friction {
-    Friction::CoulombTanh { coefficient, regularisation }
+    Friction::constant(Law::CoulombTanh { regularisation }, coefficient)
 }
 
 impl Setting {
@@ -156,22 +163,12 @@ impl Setting {
             arms.join(", ")
         );
         // Writing to a string cannot fail.
-        match self.friction {
-            Some(Friction::CoulombTanh { coefficient, regularisation }) => {
-                let _ = writeln!(text, "[friction]\nlaw = \"coulomb_tanh\"\ncoefficient = {coefficient:?}");
-                let _ = writeln!(text, "regularisation = {regularisation:?}");
-            }
-            Some(Friction::CoulombElasticSlip { coefficient, elastic_slip }) => {
-                let _ = writeln!(text, "[friction]\nlaw = \"coulomb_elastic_slip\"\ncoefficient = {coefficient:?}");
-                let _ = writeln!(text, "elastic_slip = {elastic_slip:?}");
-            }
-            Some(Friction::Coulomb { coefficient }) => {
-                let _ = writeln!(text, "[friction]\nlaw = \"coulomb\"\ncoefficient = {coefficient:?}");
-            }
-            None => {}
+        if let Some(friction) = &self.friction {
+            let _ = writeln!(text, "[friction]\n{}", toml::to_string(friction).unwrap_or_default());
         }
-        for Phase { duration, steps, approach, velocity } in &self.phases {
-            let _ = writeln!(text, "[[phase]]\nduration = {duration:?}\nsteps = {steps}\napproach = {approach:?}");
+        for Phase { duration, steps, approach, force, velocity } in &self.phases {
+            let held = force.map_or(format!("approach = {approach:?}"), |force| format!("normal_force = {force:?}"));
+            let _ = writeln!(text, "[[phase]]\nduration = {duration:?}\nsteps = {steps}\n{held}");
             let _ = writeln!(text, "velocity = {velocity:?}");
         }
         text
@@ -205,16 +202,17 @@ impl Setting {
             solid: self.solid.clone(),
             width: self.width,
             velocity,
-            friction: self.friction.as_ref().map_or(0.0, Friction::coefficient),
+            friction: self.friction.as_ref().and_then(Friction::coefficient).unwrap_or(0.0),
             softness: self.softness(),
         }
     }
 
     /// The oracle's forces at the end of each phase, by the same steps on `nodes` nodes; for waves at constant velocity.
     pub fn transient(&self, nodes: usize) -> Result<Vec<Vec<transient::Forces>>> {
-        let (friction, regularisation) = match self.friction {
-            Some(Friction::CoulombTanh { coefficient, regularisation }) => (coefficient, regularisation),
-            Some(Friction::CoulombElasticSlip { .. } | Friction::Coulomb { .. }) => {
+        let friction = self.friction.as_ref().map(|friction| (friction.law, friction.coefficient()));
+        let (friction, regularisation) = match friction {
+            Some((Law::CoulombTanh { regularisation }, Some(coefficient))) => (coefficient, regularisation),
+            Some(_) => {
                 return Err(Error::Internal("the oracle's friction is regularised by the slip rate".into()));
             }
             None => (0.0, 1.0),

@@ -9,7 +9,7 @@ use super::half_space::{EDGES, OSCILLATION, deep, hertz_among_images, largest, m
 use super::setting::{Indenter, Phase, Setting};
 use super::{Case, Row, resolution};
 use crate::oracle::line_contact::{Oscillation, Westergaard};
-use crate::scene::Friction;
+use crate::scene::{Friction, Law};
 use crate::solution::Solution;
 
 const POISSON: f64 = 0.4999;
@@ -27,14 +27,14 @@ fn nearly_incompressible(n: usize, indenter: Indenter, elastic_slip: f64, phases
     Setting {
         depth: 1.0,
         mean_dilatation: true,
-        friction: Some(Friction::CoulombElasticSlip { coefficient: FRICTION, elastic_slip }),
+        friction: Some(Friction::constant(Law::CoulombElasticSlip { elastic_slip }, FRICTION)),
         ..deep(n, POISSON, indenter, phases)
     }
 }
 
 /// A motion along the face at a held approach, in one second.
 fn sway(distance: f64, steps: usize, approach: f64) -> Phase {
-    Phase { duration: 1.0, steps, approach, velocity: distance }
+    Phase { velocity: distance, ..Phase::press(1.0, steps, approach) }
 }
 
 /// Normal force, then a growing tangential displacement: the tractions point by point, and the zone that sticks.

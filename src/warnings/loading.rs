@@ -4,7 +4,7 @@ use super::encounter::Encounter;
 use super::{Before, Warning, above, phase};
 use crate::loading::{Motion, Phase};
 use crate::rheology::Prony;
-use crate::scene::{Friction, Memory, Scene, Stepping};
+use crate::scene::{Law, Memory, Scene, Stepping};
 
 /// The regularisation over the slowest motion that friction resists; the elastic slip over the shortest.
 pub const MOST_REGULARISED: f64 = 0.01;
@@ -37,7 +37,8 @@ fn speeds(phase: &Phase) -> [f64; 2] {
 
 /// Above [`MOST_REGULARISED`] of the slowest motion in contact.
 pub fn regularisation(before: &Before<'_>) -> Option<Warning> {
-    let Some(Friction::CoulombTanh { coefficient, regularisation }) = before.scene.friction else { return None };
+    let friction = before.scene.friction.as_ref().filter(|friction| !friction.is_none())?;
+    let Law::CoulombTanh { regularisation } = friction.law else { return None };
     let named = |phase: &Phase| {
         let [towards, along] = speeds(phase);
         [(towards, "approach"), (along, "sliding")].map(|(speed, what)| (speed, what, phase.name.clone()))
@@ -45,7 +46,7 @@ pub fn regularisation(before: &Before<'_>) -> Option<Warning> {
     let motions = before.encounters.moving().flat_map(|(_, phase, _)| named(phase)).filter(|(speed, ..)| *speed > 0.0);
     let (slowest, what, name) = motions.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let share = regularisation / slowest;
-    if coefficient == 0.0 || !above(share, MOST_REGULARISED) {
+    if !above(share, MOST_REGULARISED) {
         return None;
     }
     let text = format!(
@@ -60,7 +61,10 @@ pub fn regularisation(before: &Before<'_>) -> Option<Warning> {
 /// Above [`MOST_REGULARISED`] of the shortest motion in contact, or of coefficient times overlap, which is about what an
 /// approach or the onset of sliding displaces the face by.
 pub fn elastic_slip(before: &Before<'_>) -> Option<Warning> {
-    let Some(Friction::CoulombElasticSlip { coefficient, elastic_slip }) = before.scene.friction else { return None };
+    let friction = before.scene.friction.as_ref()?;
+    let Law::CoulombElasticSlip { elastic_slip } = friction.law else { return None };
+    // Of a formula nobody knows the coefficient beforehand.
+    let coefficient = friction.coefficient().unwrap_or(1.0);
     let range = |phase: &Phase| {
         let [least, most] = phase.sliding_range();
         most - least

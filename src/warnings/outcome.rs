@@ -2,7 +2,7 @@
 
 use super::{After, Warning, above, cells, phase};
 use crate::output::HistoryRow;
-use crate::scene::{Friction, Motion};
+use crate::scene::{Law, Motion};
 
 /// The imbalance of energies over the largest work.
 pub const MOST_IMBALANCE: f64 = 0.05;
@@ -129,8 +129,8 @@ pub fn between_nodes(after: &After<'_>) -> Option<Warning> {
 
 /// Above [`MOST_STUCK_SLIP`] of what the indenter moves in some phase: along the face, or else towards it.
 pub fn stuck_slip(after: &After<'_>) -> Option<Warning> {
-    let law = after.scene.friction.as_ref().filter(|law| law.coefficient() > 0.0)?;
-    let by_rate = matches!(law, Friction::CoulombTanh { .. });
+    let friction = after.scene.friction.as_ref().filter(|friction| !friction.is_none())?;
+    let by_rate = matches!(friction.law, Law::CoulombTanh { .. });
     let phases = after.history.chunk_by(|a, b| a.phase == b.phase).filter_map(|rows| {
         let (first, last) = (rows.first()?, rows.last()?);
         let phase = after.scene.phases.get(first.phase)?;

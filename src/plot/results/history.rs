@@ -28,7 +28,7 @@ pub(super) fn against_time(run: &Run, label: &str, values: &[f64]) -> Curve {
 
 /// The force at which all would slip, in the directions that the tangential force takes.
 pub(super) fn limits(run: &Run) -> Vec<Curve> {
-    let friction = run.scene.friction.as_ref().map_or(0.0, Friction::coefficient);
+    let friction = run.scene.friction.as_ref().and_then(Friction::coefficient).unwrap_or(0.0);
     let history = &run.history;
     let limit = |sign: f64, label: &str| {
         let values: Vec<f64> = history.normal.iter().map(|normal| sign * friction * normal).collect();

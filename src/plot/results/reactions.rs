@@ -144,7 +144,7 @@ fn theory(run: &Run, radius: f64) -> Result<Theory> {
     let (modulus, poisson) = (2.0 * material.shear_modulus / (1.0 - material.poisson_ratio), material.poisson_ratio);
     Ok(Theory {
         disk: HalfDisk { modulus, poisson, radius, indenter },
-        friction: run.scene.friction.as_ref().map_or(0.0, Friction::coefficient),
+        friction: run.scene.friction.as_ref().and_then(Friction::coefficient).unwrap_or(0.0),
         pressed: run.approach_time(),
     })
 }

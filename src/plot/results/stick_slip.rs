@@ -5,7 +5,7 @@ use super::{Run, nearest};
 use crate::error::Result;
 use crate::output::reader::Field;
 use crate::plot::{Axis, Colouring, Map, Panel, Raster, Sheet};
-use crate::scene::Friction;
+use crate::scene::Law;
 
 /// Fields of the map along the time.
 const COLUMNS: usize = 900;
@@ -46,13 +46,13 @@ impl State<'_> {
     fn class(&self, frame: usize, node: usize) -> f64 {
         let [pressure, shear, rate] =
             [self.face.pressure(), &self.shear, &self.slip_rate].map(|field| field.row(frame)[node]);
-        let sticks = match &self.run.scene.friction {
+        let friction = self.run.scene.friction.as_ref();
+        let sticks = match friction.map(|friction| (friction.law, friction.coefficient())) {
             _ if pressure <= 0.0 => return 0.0,
-            Some(Friction::CoulombTanh { regularisation, .. }) => rate.abs() < *regularisation,
+            Some((Law::CoulombTanh { regularisation }, _)) => rate.abs() < regularisation,
             // Up to round-off.
-            Some(Friction::CoulombElasticSlip { coefficient, .. } | Friction::Coulomb { coefficient }) => {
-                shear.abs() < (1.0 - 1e-12) * coefficient * pressure
-            }
+            Some((_, Some(coefficient))) => shear.abs() < (1.0 - 1e-12) * coefficient * pressure,
+            Some((_, None)) => rate == 0.0,
             None => false,
         };
         if sticks { 1.0 } else { 2.0 }

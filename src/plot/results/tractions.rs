@@ -85,7 +85,7 @@ fn overlap(run: &Run) -> Option<f64> {
 
 fn panel(run: &Run, face: &Face, shear: &Field, unit: &Unit, stage: &Stage) -> Figure {
     let window = face.window(&stage.frames);
-    let coefficient = run.scene.friction.as_ref().map(Friction::coefficient).filter(|f| *f > 0.0);
+    let coefficient = run.scene.friction.as_ref().and_then(Friction::coefficient).filter(|f| *f > 0.0);
     let colours = Ramp::lines(stage.frames.len());
     let profile = |field: &Field, frame: usize, factor: f64| {
         let points = face.profile(field, frame, &window).into_iter();

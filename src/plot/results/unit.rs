@@ -44,7 +44,8 @@ impl Unit {
 
     /// What the symbols of a figure are: the modulus, the coefficient of friction, the velocity of sliding.
     pub fn note(&self, run: &Run) -> String {
-        let friction = run.scene.friction.as_ref().map(Friction::coefficient).map(|f| format!("f = {}", short(f, 4)));
+        let friction =
+            run.scene.friction.as_ref().and_then(Friction::coefficient).map(|f| format!("f = {}", short(f, 4)));
         let velocity = run.velocity().map(|v| format!("v = {} m/s", short(v, 4)));
         let parts = [self.note.clone()].into_iter().chain(friction).chain(velocity);
         parts.filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ")

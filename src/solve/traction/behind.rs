@@ -6,6 +6,7 @@ use super::super::accepted::AcceptedFace;
 use super::super::response::Compliance;
 use super::{Moduli, Site};
 use crate::error::Result;
+use crate::friction::Circumstances;
 use crate::interface::{Interface, Point};
 use crate::loading::Placement;
 
@@ -107,15 +108,27 @@ impl Behind<'_> {
         }
     }
 
+    /// How steeply friction may fall with the slip, Pa/m, at a point by what it has slid, under the highest pressure there is.
+    fn falls(&self, dt: f64) -> impl Fn(f64) -> f64 {
+        let pressure = self.interface.states().iter().map(|state| state.pressure).fold(0.0, f64::max);
+        let law = self.interface.friction();
+        let at = move |slid| Circumstances { pressure, dt, resolution: 0.0, slid };
+        let fall = move |slid| law.map_or(0.0, |law| law.strength().steepest_fall(at(slid)));
+        let anywhere = law.is_none_or(|law| !law.strength().remembers()).then(|| fall(0.0));
+        move |slid| anywhere.unwrap_or_else(|| fall(slid))
+    }
+
     /// The points in a step to `placement`, where the profile was placed, from the accepted face; `free` is what the nodes do
     /// without contact, m.
     pub fn sites(&self, accepted: &AcceptedFace, placement: Placement, free: &[f64]) -> Vec<Site<2>> {
         let interface = self.interface;
         let Placement { approach, sliding_rate, approach_rate, dt, .. } = placement;
         let way = Vector2::new(sliding_rate, -approach_rate) * dt;
+        let falls = self.falls(dt);
         let site = |(i, point): (usize, &Point<2>)| {
             let past = interface.points().at(i, accepted.displacement());
             let elastic = interface.friction().map_or(Vector2::zeros(), |law| interface.states()[i].elastic(law));
+            let slid = interface.states()[i].slid;
             let vertical = interface.clearance(i, approach);
             let moved = interface.points().at(i, free).norm();
             let height = vertical + approach;
@@ -125,7 +138,8 @@ impl Behind<'_> {
                 clearance: vertical * point.normal.y,
                 drive: way + past + elastic,
                 elastic,
-                moduli: self.moduli(i, interface.penalty()),
+                slid,
+                moduli: self.moduli(i, interface.penalty()).above(falls(slid)),
                 lengths: [
                     moved.max(approach.abs()).max(height.min(2.0 * approach.abs())),
                     moved.max(past.norm()).max(way.norm()),

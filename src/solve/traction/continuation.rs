@@ -10,7 +10,7 @@ use nalgebra::SVector;
 use super::search::{Operator, Outcome, settle};
 use super::{Laws, Site};
 use crate::error::Result;
-use crate::friction::{Circumstances, ElasticSlip, Law, Shear};
+use crate::friction::{Circumstances, ElasticSlip, Lasting, Law, Share, Strength};
 
 /// Iterations from where the contact was, before laws are softened, and of each softer law.
 const DIRECT: usize = 20;
@@ -60,7 +60,7 @@ pub fn start<const D: usize>(
 /// The law with a shear that turns over a slip no shorter than `slip`, m, over a stiffness.
 fn softer(law: &dyn Law, dt: f64, (slip, stiffness): (f64, f64)) -> Box<dyn Law + '_> {
     match law.sharpness(dt) {
-        0.0 => Box::new(ElasticSlip { coefficient: law.coefficient(), elastic_slip: slip / stiffness }),
+        0.0 => Box::new(ElasticSlip { strength: law.strength().clone(), elastic_slip: slip / stiffness }),
         sharpness => Box::new(Softened { law, share: (sharpness * stiffness / slip).min(1.0) }),
     }
 }
@@ -73,13 +73,17 @@ struct Softened<'a> {
 }
 
 impl Law for Softened<'_> {
-    fn coefficient(&self) -> f64 {
-        self.law.coefficient()
+    fn strength(&self) -> &Strength {
+        self.law.strength()
     }
 
-    fn shear(&self, at: Circumstances, slip: f64) -> Shear {
-        let Shear { shear, by_slip, by_pressure } = self.law.shear(at, slip * self.share);
-        Shear { shear, by_slip: by_slip * self.share, by_pressure }
+    fn share(&self, at: Circumstances, slip: f64) -> Share {
+        let Share { value, by_slip } = self.law.share(at, slip * self.share);
+        Share { value, by_slip: by_slip * self.share }
+    }
+
+    fn lasting(&self, slip: f64) -> Lasting {
+        self.law.lasting(slip)
     }
 
     fn sharpness(&self, dt: f64) -> f64 {

@@ -38,7 +38,7 @@ impl Fourier {
         let active: Vec<_> = points.iter().filter(|point| point.active).collect();
         let (soft, stiff) = active.first().map_or((1.0, 0.0), |point| (point.soft, point.stiff));
         let rho = active.iter().map(|point| modulus(point)).fold(0.0, f64::max);
-        let shares = || active.iter().map(|point| (1.0 - point.slack[0], point.slack[0]));
+        let shares = || active.iter().map(|point| (share(point), 1.0 - share(point)));
         let (give, square) =
             shares().fold((0.0, 0.0), |(give, square), (th, slack)| (give + th * slack, square + th * th));
         let kappa = if square > 0.0 { SOFTNESS * give / square } else { 0.0 };
@@ -53,7 +53,7 @@ impl Fourier {
     pub fn solve(&self, points: &[Linearised<2>], b: &[Vector2<f64>]) -> Result<Vec<Vector2<f64>>> {
         let combined: Vec<_> = points.iter().zip(b).map(|(point, b)| point.combined(b)).collect();
         let load = |(point, b): (&Linearised<2>, &Vector2<f64>)| match point.active {
-            true => [if self.sticks { (1.0 - point.slack[0]).sqrt() * b.x } else { 0.0 }, b.y],
+            true => [if self.sticks { share(point).sqrt() * b.x } else { 0.0 }, b.y],
             false => [0.0; 2],
         };
         let loads: Vec<f64> = points.iter().zip(&combined).flat_map(load).collect();
@@ -69,11 +69,16 @@ impl Fourier {
                 return *b;
             }
             let [slack, _] = point.slack;
-            let stick = if self.sticks { (1.0 - slack).sqrt() * y[0] } else { 0.0 };
+            let stick = if self.sticks { share(point).sqrt() * y[0] } else { 0.0 };
             point.dragged(&Vector2::new(slack * b.x + stick, y[1]))
         };
         Ok(points.iter().zip(&combined).zip(solved.as_chunks().0).map(of).collect())
     }
+}
+
+/// Th along e; none where friction falls.
+fn share(point: &Linearised<2>) -> f64 {
+    (1.0 - point.slack[0]).max(0.0)
 }
 
 /// rho_t

@@ -49,6 +49,8 @@ pub struct Site<const D: usize> {
     pub drive: SVector<f64, D>,
     /// e_n, m
     pub elastic: SVector<f64, D>,
+    /// What it has slid for good, m.
+    pub slid: f64,
     /// What the layer's answer to the point's own traction asks for.
     pub moduli: Moduli,
     /// What the digits of o and of s are taken from, m.
@@ -62,6 +64,13 @@ pub struct Moduli {
     pub normal: f64,
     /// rho_t; none where the layer is held along the face, so that the slip is known and the law explicit.
     pub tangential: Option<f64>,
+}
+
+impl Moduli {
+    /// With a tangential one of twice `fall`, Pa/m, at least: a law that falls no steeper meets a spring of that once.
+    fn above(self, fall: f64) -> Self {
+        Self { tangential: self.tangential.map(|rho| rho.max(2.0 * fall)), ..self }
+    }
 }
 
 /// The laws of a step.
@@ -134,12 +143,17 @@ impl<const D: usize> Site<D> {
         let pressed = answer.stiff * trial;
         let mut closed = SVector::zeros();
         if let Some(law) = laws.friction {
-            let at = Circumstances { pressure: pressed, dt: laws.dt, resolution: laws.resolution };
+            let at = self.circumstances(pressed, laws);
             closed = self.meet(law, at, (shear, slip), &mut answer);
         }
         (answer.pressure, answer.shear) = (pressed, closed);
         answer.excess = (shear - closed) - normal * (pressure - pressed);
         answer
+    }
+
+    /// In which its friction answers.
+    pub fn circumstances(&self, pressure: f64, laws: Laws<'_>) -> Circumstances {
+        Circumstances { pressure, dt: laws.dt, resolution: laws.resolution, slid: self.slid }
     }
 
     /// q*, and what is known of it.
@@ -160,7 +174,7 @@ impl<const D: usize> Site<D> {
             let [grip, slack] = match slope / (slope + rho) {
                 _ if slope.is_infinite() => [1.0, 0.0],
                 // Beside 1 that is nothing, and the shear is known without the others.
-                grip if grip < 0.25 * f64::EPSILON => [0.0, 1.0],
+                grip if grip.abs() < 0.25 * f64::EPSILON => [0.0, 1.0],
                 grip => [grip, rho / (slope + rho)],
             };
             (answer.grip[i], answer.slack[i]) = (grip, slack);
@@ -168,7 +182,7 @@ impl<const D: usize> Site<D> {
         answer.drag = shear.by_pressure;
         answer.slip = answer.direction * slip;
         answer.sticks = law.sticks(at, slip);
-        answer.noise += (f64::EPSILON * (reach + answer.grip[0] * rho * self.lengths[1])).powi(2);
+        answer.noise += (f64::EPSILON * (reach + answer.grip[0].abs() * rho * self.lengths[1])).powi(2);
         answer.direction * shear.shear
     }
 }
@@ -182,7 +196,7 @@ fn held<const D: usize>(
     answer: &mut Answer<D>,
 ) -> SVector<f64, D> {
     let length = slip.norm();
-    let bound = law.coefficient() * at.pressure;
+    let bound = law.bound(at, 0.0).value;
     let any = length == 0.0 && law.shear(at, 0.0).by_slip.is_infinite();
     let met = law.shear(at, length);
     answer.slip = slip;
@@ -239,9 +253,10 @@ impl<const D: usize> Answer<D> {
         let Relative { overlap, .. } = site.relative(motion);
         let of_step = self.slip - site.elastic;
         if !self.active {
-            return State { overlap: overlap.min(0.0), slip: of_step, ..State::default() };
+            return State { overlap: overlap.min(0.0), slip: of_step, slid: before.slid, ..State::default() };
         }
         State {
+            slid: before.slid + laws.friction.map_or(0.0, |law| law.lasting(self.slip.norm()).length),
             pressure: self.pressure,
             shear: self.shear,
             overlap: laws.penalty.map_or(0.0, |alpha| self.pressure / alpha),
