@@ -5,6 +5,7 @@ mod estimate;
 mod inputs;
 mod profile;
 
+use std::any::Any;
 use std::cell::RefCell;
 use std::collections::HashSet;
 use std::path::Path;
@@ -13,6 +14,7 @@ use std::sync::Arc;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
+use nalgebra::Vector2;
 
 use crate::bulk::Arms;
 use crate::element::mpjr::Quadrature;
@@ -20,10 +22,10 @@ use crate::error::{Error, Result};
 use crate::friction::{Coefficient, Coulomb, CoulombTanh, ElasticSlip, Law, Strength};
 use crate::interface::{Interface, Laws};
 use crate::loading::{self, Adaptive, Motion, Phase, Placement};
-use crate::mesh::Mesh;
+use crate::mesh::Source;
 use crate::parallel::{agree, share_numbers};
 use crate::petsc::{Integrator, Linear, Matrix, Search, Settings, Vector};
-use crate::profile::Profile;
+use crate::profile::{Extruded, Profile, Surface};
 use crate::scene::{self, Scene, Stepping, When};
 use crate::solve::{
     Body, Compliance, Condensed, Following, Inside, Interior, LARGE_FACE, LARGE_PERIODIC_FACE, Layered, MAX_NEWTON,
@@ -49,26 +51,32 @@ pub struct Problem {
     /// TS and SNES, ready to solve it.
     pub integrator: Integrator,
     /// The body's mesh, for output.
-    pub mesh: Mesh,
+    pub mesh: Source<2>,
 }
 
 /// The last elastic compliance on this rank, for the next scene with the same mesh and moduli: in a sweep it is
 /// computed once.
 #[derive(Default)]
 pub struct Compliances {
-    last: RefCell<Option<(Solid, Rc<Compliance>)>>,
+    /// A solid, and the compliance of its face.
+    last: RefCell<Option<Box<dyn Any>>>,
 }
 
 impl Compliances {
-    fn get(&self, solid: &Solid, compute: impl FnOnce() -> Result<Compliance>) -> Result<Rc<Compliance>> {
+    fn get<const D: usize>(
+        &self,
+        solid: &Solid<D>,
+        compute: impl FnOnce() -> Result<Compliance<D>>,
+    ) -> Result<Rc<Compliance<D>>> {
         let mut last = self.last.borrow_mut();
-        if let Some((_, compliance)) = last.as_ref().filter(|(other, _)| other == solid) {
+        let known = last.as_ref().and_then(|last| last.downcast_ref::<(Solid<D>, Rc<Compliance<D>>)>());
+        if let Some((_, compliance)) = known.filter(|(other, _)| other == solid) {
             return Ok(compliance.clone());
         }
         // Frees the old one first.
         *last = None;
         let compliance = Rc::new(compute()?);
-        *last = Some((solid.clone(), compliance.clone()));
+        *last = Some(Box::new((solid.clone(), compliance.clone())));
         Ok(compliance)
     }
 }
@@ -76,7 +84,7 @@ impl Compliances {
 /// The body and the indenter of a scene, read and checked: all that it may be refused for.
 pub struct Parts {
     /// The body's mesh.
-    pub mesh: Mesh,
+    pub mesh: Source<2>,
     /// The indenter's profile.
     pub shape: Shape,
 }
@@ -119,14 +127,35 @@ pub fn build_with_profile(comm: &SimpleCommunicator, scene: &Scene, profile: Box
 pub fn assemble(
     comm: &SimpleCommunicator,
     scene: &Scene,
-    (mesh, profile): (Mesh, Box<dyn Profile>),
+    (mesh, profile): (Source<2>, Box<dyn Profile>),
     compliances: &Compliances,
 ) -> Result<Problem> {
+    let (strategy, phases) = assembled(comm, scene, (mesh.clone(), Box::new(Extruded(profile))), compliances)?;
+    let Strategy { strategy, tangent, u, integrator } = strategy;
+    Ok(Problem { strategy, tangent, u, phases, integrator, mesh })
+}
+
+/// A strategy with its unknowns.
+struct Strategy {
+    strategy: Box<dyn TransientProblem>,
+    tangent: Matrix,
+    u: Vector,
+    integrator: Integrator,
+}
+
+/// The strategy of a scene in D dimensions, and the phases that it goes through.
+fn assembled<const D: usize>(
+    comm: &SimpleCommunicator,
+    scene: &Scene,
+    (source, profile): (Source<D>, Box<dyn Surface>),
+    compliances: &Compliances,
+) -> Result<(Strategy, Vec<Phase>)> {
     let materials = Materials::new(scene);
     let friction = scene.friction.as_ref().map(friction).transpose()?;
-    let laws = Laws { profile, penalty: body::penalty(scene, &mesh), friction };
-    let interface = Interface::new(mesh.face.clone(), laws, quadrature(scene.contact.quadrature));
-    let solid = Solid { mesh, quadrilateral: body::quadrilateral(scene), regions: materials.regions.clone() };
+    let laws = Laws { profile, penalty: body::penalty(scene, &source), friction };
+    let mut interface = Interface::new(source.face(), laws, quadrature(scene.contact.quadrature));
+    let phases = phases(scene, clearance(scene, &mut interface)?);
+    let solid = Solid { source, dilatation: body::dilatation(scene), regions: materials.regions.clone() };
     let mut problem = match form(scene) {
         Form::Monolithic => monolithic(comm, scene, (solid, materials), interface)?,
         Form::Following => following(comm, scene, (solid, materials), interface, compliances)?,
@@ -135,7 +164,7 @@ pub fn assemble(
     if scene.output.energy {
         problem.strategy.keep_account(&problem.u)?;
     }
-    Ok(problem)
+    Ok((problem, phases))
 }
 
 /// How a scene is solved.
@@ -158,75 +187,71 @@ pub fn form(scene: &Scene) -> Form {
     }
 }
 
-fn monolithic(
+fn monolithic<const D: usize>(
     comm: &SimpleCommunicator,
     scene: &Scene,
-    (solid, materials): (Solid, Materials),
-    mut interface: Interface,
-) -> Result<Problem> {
-    let mesh = solid.mesh.clone();
-    let body = Body::new(comm.duplicate(), solid)?;
+    (solid, materials): (Solid<D>, Materials),
+    interface: Interface<D>,
+) -> Result<Strategy> {
+    let body = Body::new(comm.duplicate(), &solid)?;
     let u = body.vector()?;
     let bulk = materials.bulk(&body, &u)?;
     let mut tangent = bulk.new_tangent()?;
-    tangent.set_near_null_space(&mut body.coordinates()?)?;
+    tangent.set_near_null_space(&mut body.coordinates()?, D)?;
     if interface.friction().is_none() {
         tangent.declare_positive_definite()?;
     }
     let settings = Settings { linear: Linear::Preconditioned, max_newton: MAX_NEWTON, search: Search::Least };
     let integrator = Integrator::new(comm, settings, &mut tangent)?;
-    let phases = phases(scene, clearance(scene, &mut interface)?);
     let mut strategy = Box::new(Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?);
     if integrator.asks_for_solves()? {
         strategy.starts_from_the_laws();
     }
-    Ok(Problem { strategy, tangent, u, phases, integrator, mesh })
+    Ok(Strategy { strategy, tangent, u, integrator })
 }
 
-fn following(
+fn following<const D: usize>(
     comm: &SimpleCommunicator,
     scene: &Scene,
-    (solid, materials): (Solid, Materials),
-    interface: Interface,
+    (solid, materials): (Solid<D>, Materials),
+    interface: Interface<D>,
     compliances: &Compliances,
-) -> Result<Problem> {
-    let u = face_vector(comm, &solid.mesh)?;
-    let get = || compliances.get(&solid, || compliance(scene, &solid)).map(Some);
+) -> Result<Strategy> {
+    let u = face_vector(comm, &interface)?;
+    let get = || compliances.get(&solid, || compliance(&solid)).map(Some);
     let compliance = agree(comm, if comm.rank() == 0 { get() } else { Ok(None) })?;
-    let mesh = solid.mesh.clone();
     let Materials { series, times, memory, .. } = materials;
     let relaxation = match series.into_iter().next().flatten() {
         Some(series) => Some(Relaxation { arms: Arms::new(times, memory, &u)?, series }),
         None => None,
     };
-    let column = periodic_column(scene, &solid);
+    let column = PeriodicColumn::new(&solid);
+    let height = solid.source.height();
     let interior = Interior::new(comm, solid, column);
     let backing = Following { compliance, relaxation, interior, secant: 1.0, account: None };
-    condensed(comm, scene, mesh, u, (interface, backing))
+    condensed(comm, scene, (u, height), (interface, backing))
 }
 
-fn remembering(
+fn remembering<const D: usize>(
     comm: &SimpleCommunicator,
     scene: &Scene,
-    (solid, materials): (Solid, Materials),
-    interface: Interface,
-) -> Result<Problem> {
-    let inside = if comm.rank() == 0 { inside(scene, &solid, materials).map(Some) } else { Ok(None) };
-    let mesh = solid.mesh;
+    (solid, materials): (Solid<D>, Materials),
+    interface: Interface<D>,
+) -> Result<Strategy> {
+    let inside = if comm.rank() == 0 { inside(&solid, materials).map(Some) } else { Ok(None) };
     let backing = Remembering::new(comm, agree(comm, inside)?);
-    let u = face_vector(comm, &mesh)?;
-    condensed(comm, scene, mesh, u, (interface, backing))
+    let u = face_vector(comm, &interface)?;
+    condensed(comm, scene, (u, solid.source.height()), (interface, backing))
 }
 
-fn condensed<R: Response + 'static>(
+fn condensed<const D: usize, R: Response<D> + 'static>(
     comm: &SimpleCommunicator,
     scene: &Scene,
-    mesh: Mesh,
-    u: Vector,
-    (mut interface, response): (Interface, R),
-) -> Result<Problem> {
+    (u, height): (Vector, f64),
+    (interface, response): (Interface<D>, R),
+) -> Result<Strategy> {
     let periodic = scene.layer().is_some_and(|layer| layer.sides == scene::Sides::Periodic);
-    let components = 2 * mesh.face.x.len();
+    let components = D * interface.face().count();
     let linear = match components > if periodic { LARGE_PERIODIC_FACE } else { LARGE_FACE } {
         // Where a product costs next to nothing, Newton's method need not wait for exact steps.
         true if components <= LARGE_FACE => Linear::OwnIterative(1e-6),
@@ -235,45 +260,38 @@ fn condensed<R: Response + 'static>(
     };
     // The tractions of the points, on rank 0.
     let points = if u.local_len() > 0 { interface.points().count() } else { 0 };
-    let height = scene.is_loaded().then(|| body::height(&mesh));
+    let height = scene.is_loaded().then_some(height);
     let last = usize::from(height.is_some() && points > 0);
-    let tractions = Vector::new(comm, 2 * points + last)?;
+    let tractions = Vector::new(comm, D * points + last)?;
     let mut tangent = Matrix::shell(comm, tractions.local_len())?;
     let settings = Settings { linear, max_newton: MAX_NEWTON, search: Search::Own };
     let integrator = Integrator::new(comm, settings, &mut tangent)?;
-    let phases = phases(scene, clearance(scene, &mut interface)?);
     let strategy = Box::new(Condensed::new(comm, interface, response, &u, (scene.solver.tolerance, height))?);
-    Ok(Problem { strategy, tangent, u: tractions, phases, integrator, mesh })
+    Ok(Strategy { strategy, tangent, u: tractions, integrator })
 }
 
-/// x, z of each face node, on rank 0.
-fn face_vector(comm: &SimpleCommunicator, mesh: &Mesh) -> Result<Vector> {
-    Vector::new(comm, if comm.rank() == 0 { 2 * mesh.face.unknown.len() } else { 0 })
+/// The components of each face node, on rank 0.
+fn face_vector<const D: usize>(comm: &SimpleCommunicator, interface: &Interface<D>) -> Result<Vector> {
+    Vector::new(comm, if comm.rank() == 0 { D * interface.face().count() } else { 0 })
 }
 
 /// The compliance of the face, by this rank alone.
-fn compliance(scene: &Scene, solid: &Solid) -> Result<Compliance> {
-    match periodic_column(scene, solid) {
+fn compliance<const D: usize>(solid: &Solid<D>) -> Result<Compliance<D>> {
+    match PeriodicColumn::new(solid) {
         Some(column) => column.compliance(),
-        None => Compliance::by_schur_complement(&Body::new(SimpleCommunicator::self_comm(), solid.clone())?),
+        None => Compliance::by_schur_complement(&Body::new(SimpleCommunicator::self_comm(), solid)?),
     }
 }
 
 /// The whole body with its memory, on this rank alone.
-fn inside(scene: &Scene, solid: &Solid, materials: Materials) -> Result<Box<dyn Inside>> {
-    if let Some(column) = periodic_column(scene, solid) {
+fn inside<const D: usize>(solid: &Solid<D>, materials: Materials) -> Result<Box<dyn Inside<D>>> {
+    if let Some(column) = PeriodicColumn::new(solid) {
         let Materials { times, series, memory: rule, .. } = materials;
         return Ok(Box::new(Layered::new(solid.clone(), &column, Relaxations { times, rule, series })));
     }
-    let body = Body::new(SimpleCommunicator::self_comm(), solid.clone())?;
+    let body = Body::new(SimpleCommunicator::self_comm(), solid)?;
     let bulk = materials.bulk(&body, &body.vector()?)?;
     Ok(Box::new(Sparse::new(bulk, body)?))
-}
-
-/// One column of a periodic layer; none for any other body.
-fn periodic_column(scene: &Scene, solid: &Solid) -> Option<PeriodicColumn> {
-    let layer = scene.layer().filter(|layer| layer.sides == scene::Sides::Periodic)?;
-    Some(PeriodicColumn::new(solid, layer.cells))
 }
 
 fn friction(friction: &scene::Friction) -> Result<Box<dyn Law>> {
@@ -301,19 +319,19 @@ fn quadrature(quadrature: scene::Quadrature) -> Quadrature {
 }
 
 /// The gap to close before the indenter touches the face at rest, m; only for scenes with adaptive steps.
-fn clearance(scene: &Scene, interface: &mut Interface) -> Result<f64> {
+fn clearance<const D: usize>(scene: &Scene, interface: &mut Interface<D>) -> Result<f64> {
     if !scene.is_adaptive() {
         return Ok(0.0);
     }
     interface.place(Placement::default())?;
     let points = interface.points().all().iter().enumerate();
-    let gaps = points.map(|(i, point)| interface.clearance(i, 0.0) * point.normal.y);
+    let gaps = points.map(|(i, point)| interface.clearance(i, 0.0) * point.normal[D - 1]);
     Ok(gaps.fold(f64::INFINITY, f64::min))
 }
 
 /// The phases end to end, each from where the one before left the indenter, without their steps.
 pub fn course(scene: &Scene) -> Vec<Phase> {
-    let (mut start, mut approach, mut sliding, mut held) = (0.0, 0.0, 0.0, None);
+    let (mut start, mut approach, mut sliding, mut held) = (0.0, 0.0, Vector2::zeros(), None);
     let mut list = Vec::with_capacity(scene.phases.len());
     for phase in &scene.phases {
         let force = match (phase.normal_force, phase.approach) {
@@ -326,8 +344,10 @@ pub fn course(scene: &Scene) -> Vec<Phase> {
         held = force.map(|[_, force]| force);
         let to = phase.approach.unwrap_or(approach);
         let motion = match phase.motion {
-            scene::Motion::Velocity(v) => Motion::Velocity(v),
-            scene::Motion::Tangential { amplitude, cycles } => Motion::Sinusoid { amplitude, cycles },
+            scene::Motion::Velocity(v) => Motion::Velocity(Vector2::new(v, 0.0)),
+            scene::Motion::Tangential { amplitude, cycles } => {
+                Motion::Sinusoid { amplitude: Vector2::new(amplitude, 0.0), cycles, phase: Vector2::zeros() }
+            }
         };
         let phase = Phase {
             name: phase.name.clone(),
@@ -353,7 +373,7 @@ pub fn phases(scene: &Scene, clearance: f64) -> Vec<Phase> {
     let deepest = scene.deepest() - clearance;
     // What never touches, or just so, is given its way of getting there.
     let scale = if deepest > 0.0 { deepest } else { clearance.abs().max(1e-200) };
-    let mut rates = [0.0, 0.0];
+    let mut rates = (0.0, Vector2::zeros());
     let at = &scene.output.bulk_at;
     let moment = |when: &When| if let When::Time(t) = when { Some(*t) } else { None };
     let mut moments: Vec<f64> = at.iter().filter_map(moment).collect();
@@ -370,7 +390,7 @@ pub fn phases(scene: &Scene, clearance: f64) -> Vec<Phase> {
             last.bulk_output |= ends.contains(phase.name.as_str());
         }
         let after = phase.rates(phase.start);
-        let jump = (after[0] - rates[0]).abs() + (after[1] - rates[1]).abs();
+        let jump = (after.0 - rates.0).abs() + (after.1 - rates.1).norm();
         phase.adaptive = tolerance.map(|tolerance| Adaptive::new(phase, tolerance * scale, jump));
         rates = phase.rates(phase.end());
     }

@@ -18,11 +18,11 @@ use crate::element::mpjr::Quadrature;
 use crate::error::{Error, Result};
 use crate::friction::{Circumstances, Lasting, Law};
 use crate::loading::Placement;
-use crate::mesh::Face;
-use crate::profile::Profile;
+use crate::mesh;
+use crate::profile::Surface;
 use crate::snapshot::Snapshot;
 
-pub use displaced::{Residual, Surface, Tangent};
+pub use displaced::{Residual, Tangent, Trial};
 pub use exchange::Exchange;
 pub use points::{Point, Points};
 pub use state::State;
@@ -30,7 +30,7 @@ pub use state::State;
 /// The laws of the contact.
 pub struct Laws {
     /// The rigid profile.
-    pub profile: Box<dyn Profile>,
+    pub profile: Box<dyn Surface>,
     /// Penalty alpha, Pa/m; none = no penetration.
     pub penalty: Option<f64>,
     /// None = frictionless.
@@ -38,12 +38,14 @@ pub struct Laws {
 }
 
 /// The MPJR interface elements of a contact face.
-pub struct Interface {
-    face: Face,
+pub struct Interface<const D: usize> {
+    face: mesh::Face<D>,
     laws: Laws,
-    points: Points<2>,
+    points: Points<D>,
+    /// See [`Self::pairs`].
+    pairs: Vec<(usize, usize)>,
     /// The accepted state of each point, and where the indenter was.
-    accepted: Vec<State<2>>,
+    accepted: Vec<State<D>>,
     place: Placement,
     /// Evaluations of the tangential law while solving.
     tangential_laws: usize,
@@ -52,13 +54,13 @@ pub struct Interface {
 /// Integrals over the contact face.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Totals {
-    /// integral of (p n_z - q_z), N/m: the vertical force, compression positive; on a flat face, of p.
+    /// integral of (p n_z - q_z), N/m (N in space): the vertical force, compression positive; on a flat face, of p.
     pub normal_force: f64,
-    /// integral of q_x, N/m, on the layer, positive along +x. The horizontal part of the pressure on a curved face
-    /// (-p n_x), like that on the profile's slope, is not in it.
-    pub tangential_force: f64,
-    /// integral of p dh/dx, N/m.
-    pub hysteretic_force: f64,
+    /// integral of q along x and y, N/m or N, on the layer, positive along +x and +y. The horizontal part of the pressure on a
+    /// curved face (-p n_x), like that on the profile's slope, is not in it.
+    pub tangential_force: Vector2<f64>,
+    /// integral of p dh/dx and p dh/dy, N/m or N.
+    pub hysteretic_force: Vector2<f64>,
     /// Share of the face with p > 0.
     pub contact_fraction: f64,
     /// Share of the contact that sticks; 0 without contact or friction.
@@ -77,34 +79,67 @@ pub struct Totals {
 pub struct Fields {
     /// p, Pa, positive in compression.
     pub pressure: Vec<f64>,
-    /// q, Pa, on the layer, positive in the sense of +x.
-    pub shear: Vec<f64>,
+    /// q, Pa, on the layer, along the face in the senses of +x and +y.
+    pub shear: Vec<Vector2<f64>>,
     /// Corrected normal gap g*, m; negative = penetration.
     pub gap: Vec<f64>,
     /// w, m/s
-    pub slip_rate: Vec<f64>,
+    pub slip_rate: Vec<Vector2<f64>>,
 }
 
-impl Interface {
+/// What is asked of a contact face at its accepted state, whatever the dimension.
+pub trait Face {
+    /// Where the indenter is.
+    fn placement(&self) -> Placement;
+    /// The integrals over the face.
+    ///
+    /// # Errors
+    /// A domain error where the profile is not known.
+    fn totals(&mut self) -> Result<Totals>;
+    /// The fields after a step of length `dt`, s.
+    fn fields(&self, dt: f64) -> Fields;
+}
+
+impl<const D: usize> Face for Interface<D> {
+    fn placement(&self) -> Placement {
+        self.place
+    }
+
+    fn totals(&mut self) -> Result<Totals> {
+        Self::totals(self)
+    }
+
+    fn fields(&self, dt: f64) -> Fields {
+        Self::fields(self, dt)
+    }
+}
+
+impl<const D: usize> Interface<D> {
     /// The interface elements of `face`, at rest.
-    pub fn new(face: Face, laws: Laws, quadrature: Quadrature) -> Self {
+    pub fn new(face: mesh::Face<D>, laws: Laws, quadrature: Quadrature) -> Self {
         let points = Points::new(&face, quadrature);
+        let pairs = if points.share_nodes() { face.pairs() } else { Vec::new() };
         let accepted = vec![State::default(); points.count()];
-        Self { face, laws, points, accepted, place: Placement::default(), tangential_laws: 0 }
+        Self { face, laws, points, pairs, accepted, place: Placement::default(), tangential_laws: 0 }
     }
 
     /// The face.
-    pub fn face(&self) -> &Face {
+    pub fn face(&self) -> &mesh::Face<D> {
         &self.face
     }
 
+    /// The pairs of nodes that share a point, both ways round, in order; none where points are nodes.
+    pub fn pairs(&self) -> &[(usize, usize)] {
+        &self.pairs
+    }
+
     /// Where the laws are evaluated.
-    pub fn points(&self) -> &Points<2> {
+    pub fn points(&self) -> &Points<D> {
         &self.points
     }
 
     /// The accepted state of each point.
-    pub fn states(&self) -> &[State<2>] {
+    pub fn states(&self) -> &[State<D>] {
         &self.accepted
     }
 
@@ -145,14 +180,14 @@ impl Interface {
 
     /// The vertical clearance over a point where the indenter was placed last, c, m.
     pub fn clearance(&self, i: usize, approach: f64) -> f64 {
-        self.points.elevations()[i].height - approach - self.points.all()[i].place.y
+        self.points.heights()[i].height - approach - self.points.all()[i].place[D - 1]
     }
 
     /// Takes the accepted state to the end of a step.
     ///
     /// # Errors
     /// As for [`Self::place`]; where the coefficient of friction is none at a point in contact.
-    pub fn commit(&mut self, placement: Placement, states: Vec<State<2>>) -> Result<()> {
+    pub fn commit(&mut self, placement: Placement, states: Vec<State<D>>) -> Result<()> {
         self.place(placement)?;
         self.check_friction(placement.dt, &states)?;
         (self.accepted, self.place) = (states, Placement { dt: 0.0, ..placement });
@@ -160,9 +195,9 @@ impl Interface {
     }
 
     /// Refuses states under a coefficient of friction that is negative or not finite.
-    fn check_friction(&self, dt: f64, states: &[State<2>]) -> Result<()> {
+    fn check_friction(&self, dt: f64, states: &[State<D>]) -> Result<()> {
         let Some(law) = self.friction() else { return Ok(()) };
-        let fault = |(before, state): (&State<2>, &State<2>)| {
+        let fault = |(before, state): (&State<D>, &State<D>)| {
             let at = Circumstances { pressure: state.pressure, dt, resolution: 0.0, slid: before.slid };
             law.strength().fault(at, Lasting { length: state.slid - before.slid, by_slip: 0.0 })
         };
@@ -185,9 +220,9 @@ impl Interface {
                 continue;
             }
             contact += point.weight;
-            totals.normal_force -= point.weight * state.on_layer(&point.normal).y;
-            totals.tangential_force += point.weight * state.shear.x;
-            totals.hysteretic_force += point.weight * point.normal.y * state.pressure * self.slope(i);
+            totals.normal_force -= point.weight * state.on_layer(&point.normal)[D - 1];
+            totals.tangential_force += along_the_plane(&state.shear) * point.weight;
+            totals.hysteretic_force += self.gradient(i) * (point.weight * point.normal[D - 1] * state.pressure);
             if state.sticks {
                 stick += point.weight;
                 totals.stuck_slip = totals.stuck_slip.max(state.stuck.norm());
@@ -196,50 +231,57 @@ impl Interface {
         totals.contact_fraction = contact / length;
         totals.stick_fraction = if contact > 0.0 { stick / contact } else { 0.0 };
         let Fields { pressure, shear, .. } = self.fields(1.0);
-        let tractions: Vec<_> = shear.into_iter().zip(pressure).map(|(q, p)| Vector2::new(q, p)).collect();
-        totals.traction_oscillation = oscillation::oscillation(&self.face.edges, &tractions);
+        let traction =
+            |(q, p): (Vector2<f64>, f64)| SVector::<f64, D>::from_fn(|i, _| if i + 1 < D { q[i] } else { p });
+        let tractions: Vec<_> = shear.into_iter().zip(pressure).map(traction).collect();
+        totals.traction_oscillation = oscillation::oscillation(&self.face, &tractions);
         Ok(totals)
     }
 
-    /// dh/dx over a point of the contact: at a kink of the profile that of the side which is in contact, of both their mean.
-    fn slope(&self, i: usize) -> f64 {
-        /// How far beside the point the sides are looked at, over what the point stands for.
+    /// The gradient of h over a point of the contact: at a kink of the profile that of the side which is in contact, of both their
+    /// mean.
+    fn gradient(&self, i: usize) -> Vector2<f64> {
+        /// How far beside the point the sides are looked at, over the size of what it stands for.
         const BESIDE: f64 = 1e-6;
         /// Slopes that differ by less, over the larger, are one.
         const ALIKE: f64 = 1e-3;
-        let (point, x) = (&self.points.all()[i], self.points.all()[i].place.x - self.place.sliding);
-        let here = self.points.elevations()[i].slope;
-        let side = |sign: f64| {
-            self.laws.profile.at(x + sign * BESIDE * point.weight).map_or(here, |elevation| elevation.slope)
-        };
-        let (left, right) = (side(-1.0), side(1.0));
-        if (right - left).abs() <= ALIKE * left.abs().max(right.abs()) {
-            return here;
-        }
+        let point = &self.points.all()[i];
+        let (place, size) = (point.along() - self.place.sliding, point.weight.powf(1.0 / (D - 1) as f64));
+        let here = self.points.heights()[i].gradient;
         let touches = |other: Option<usize>| other.is_some_and(|other| self.accepted[other].pressure > 0.0);
-        match self.points.beside(i).map(touches) {
-            [true, false] => left,
-            [false, true] => right,
-            _ => 0.5 * (left + right),
-        }
+        let along = |axis: usize| {
+            let side = |sign: f64| {
+                let beside = place + Vector2::ith(axis, sign * BESIDE * size);
+                self.laws.profile.at(beside).map_or(here[axis], |height| height.gradient[axis])
+            };
+            let (left, right) = (side(-1.0), side(1.0));
+            if (right - left).abs() <= ALIKE * left.abs().max(right.abs()) {
+                return here[axis];
+            }
+            match self.points.beside(i, axis).map(touches) {
+                [true, false] => left,
+                [false, true] => right,
+                _ => 0.5 * (left + right),
+            }
+        };
+        Vector2::from_fn(|axis, _| if axis + 1 < D { along(axis) } else { 0.0 })
     }
 
     /// The fields at the accepted state after a step of length `dt`, s.
     pub fn fields(&self, dt: f64) -> Fields {
-        let zeros = || vec![0.0; self.face.x.len()];
-        let open = vec![f64::INFINITY; self.face.x.len()];
-        let mut fields = Fields { pressure: zeros(), shear: zeros(), gap: open, slip_rate: zeros() };
-        let mut length = zeros();
+        let nodes = self.face.count();
+        let (none, open) = (vec![Vector2::zeros(); nodes], vec![f64::INFINITY; nodes]);
+        let mut fields = Fields { pressure: vec![0.0; nodes], shear: none.clone(), gap: open, slip_rate: none };
+        let mut length = vec![0.0; nodes];
         for (i, point) in self.points.all().iter().enumerate() {
             self.points.shares(i).iter().for_each(|&(node, share)| length[node] += share * point.weight);
         }
         for (i, (point, state)) in self.points.all().iter().zip(&self.accepted).enumerate() {
-            let along = along(&point.normal);
             for &(node, share) in self.points.shares(i) {
                 let part = share * point.weight / length[node];
                 fields.pressure[node] += part * state.pressure;
-                fields.shear[node] += part * along.dot(&state.shear);
-                fields.slip_rate[node] += part * along.dot(&state.slip) / dt;
+                fields.shear[node] += laid_flat(&state.shear, &point.normal) * part;
+                fields.slip_rate[node] += laid_flat(&state.slip, &point.normal) * (part / dt);
                 fields.gap[node] = fields.gap[node].min(-state.overlap);
             }
         }
@@ -248,27 +290,34 @@ impl Interface {
 
     /// Adds the accepted state to a snapshot.
     pub fn save(&self, snapshot: &mut Snapshot) {
-        let mut list = Vec::with_capacity(State::<2>::NUMBERS * self.accepted.len());
+        let mut list = Vec::with_capacity(State::<D>::NUMBERS * self.accepted.len());
         self.accepted.iter().for_each(|state| state.write(&mut list));
         snapshot.put("face-states", list);
         let Placement { approach, sliding, sliding_rate, approach_rate, .. } = self.place;
-        snapshot.put("face", vec![approach, sliding, sliding_rate, approach_rate]);
+        snapshot.put("face", vec![approach, sliding.x, sliding.y, sliding_rate.x, sliding_rate.y, approach_rate]);
     }
 
     /// Takes the accepted state from a snapshot.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
-        let mut list = vec![0.0; State::<2>::NUMBERS * self.accepted.len()];
+        let mut list = vec![0.0; State::<D>::NUMBERS * self.accepted.len()];
         snapshot.fill("face-states", &mut list)?;
-        self.accepted = list.chunks_exact(State::<2>::NUMBERS).map(State::read).collect();
-        let [approach, sliding, sliding_rate, approach_rate] = snapshot.numbers("face")?;
+        self.accepted = list.chunks_exact(State::<D>::NUMBERS).map(State::read).collect();
+        let [approach, x, y, v_x, v_y, approach_rate] = snapshot.numbers("face")?;
+        let (sliding, sliding_rate) = (Vector2::new(x, y), Vector2::new(v_x, v_y));
         self.place = Placement { approach, sliding, sliding_rate, approach_rate, ..Placement::default() };
         Ok(())
     }
 }
 
-/// The unit tangent of a plane face in the sense of +x.
-fn along(normal: &SVector<f64, 2>) -> SVector<f64, 2> {
-    SVector::from([normal.y, -normal.x])
+/// x and y of a vector.
+fn along_the_plane<const D: usize>(vector: &SVector<f64, D>) -> Vector2<f64> {
+    Vector2::from_fn(|axis, _| if axis + 1 < D { vector[axis] } else { 0.0 })
+}
+
+/// x and y of a tangential vector once its face is turned from its normal to lie flat, by the least rotation.
+fn laid_flat<const D: usize>(vector: &SVector<f64, D>, normal: &SVector<f64, D>) -> Vector2<f64> {
+    let rise = vector[D - 1] / (1.0 + normal[D - 1]);
+    along_the_plane(&(vector - normal * rise))
 }
 
 #[cfg(test)]

@@ -2,15 +2,17 @@
 
 use std::f64::consts::PI;
 
+use nalgebra::{SVector, Vector2};
+
 /// The indenter's prescribed motion over one attempted step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Placement {
     /// Normal approach D at the end of the step, m.
     pub approach: f64,
-    /// Sliding s at the end of the step, m, along +x.
-    pub sliding: f64,
+    /// Sliding s at the end of the step, m, along x and y; the plane is that of x.
+    pub sliding: Vector2<f64>,
     /// (s(t) - s(t - dt)) / dt, m/s: the rate that backward Euler sees.
-    pub sliding_rate: f64,
+    pub sliding_rate: Vector2<f64>,
     /// (D(t) - D(t - dt)) / dt, m/s.
     pub approach_rate: f64,
     /// The length of the step, s; 0 at an accepted state, whose step is over.
@@ -25,14 +27,56 @@ pub struct Placement {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Motion {
     /// m/s
-    Velocity(f64),
-    /// amplitude sin(2 pi cycles t / duration)
+    Velocity(Vector2<f64>),
+    /// amplitude (sin(2 pi cycles t / duration + phase) - sin(phase)), in each direction by itself
     Sinusoid {
         /// m
-        amplitude: f64,
+        amplitude: Vector2<f64>,
         /// -
         cycles: f64,
+        /// rad
+        phase: Vector2<f64>,
     },
+}
+
+impl Placement {
+    /// What the indenter does in the step, m: V dt, with the rate of approach as the last component, downward.
+    pub fn way<const D: usize>(&self) -> SVector<f64, D> {
+        SVector::from_fn(|i, _| if i + 1 < D { self.sliding_rate[i] } else { -self.approach_rate }) * self.dt
+    }
+}
+
+impl Motion {
+    /// The velocity, m/s, at `local` of a phase of `duration`, s.
+    fn velocity(&self, local: f64, duration: f64) -> Vector2<f64> {
+        match *self {
+            Self::Velocity(velocity) => velocity,
+            Self::Sinusoid { amplitude, cycles, phase } => {
+                let angular = 2.0 * PI * cycles / duration;
+                amplitude.zip_map(&phase, |amplitude, phase| amplitude * angular * (angular * local + phase).cos())
+            }
+        }
+    }
+
+    /// How far it has gone at `local` of a phase of `duration`, and on average in the `dt` before, m and m/s.
+    fn way(&self, local: f64, dt: f64, duration: f64) -> [Vector2<f64>; 2] {
+        match *self {
+            Self::Velocity(velocity) => [velocity * local, velocity],
+            Self::Sinusoid { amplitude, cycles, phase } => {
+                let angular = 2.0 * PI * cycles / duration;
+                // sin a - sin b = 2 cos((a + b)/2) sin((a - b)/2) keeps the digits of short steps.
+                let gone = |amplitude: f64, phase: f64| match phase {
+                    0.0 => amplitude * (angular * local).sin(),
+                    _ => amplitude * 2.0 * (angular * local / 2.0 + phase).cos() * (angular * local / 2.0).sin(),
+                };
+                let half = angular * dt / 2.0;
+                let rate = |amplitude: f64, phase: f64| {
+                    amplitude * 2.0 * (angular * (local - dt / 2.0) + phase).cos() * half.sin() / dt
+                };
+                [amplitude.zip_map(&phase, gone), amplitude.zip_map(&phase, rate)]
+            }
+        }
+    }
 }
 
 /// One phase with its place in the history.
@@ -51,7 +95,7 @@ pub struct Phase {
     /// Whether it begins with the approach and the force that there are: after a phase that held a force, or before one.
     pub from_there: bool,
     /// Sliding at its beginning, m.
-    pub sliding: f64,
+    pub sliding: Vector2<f64>,
     /// How it slides.
     pub motion: Motion,
     /// Where its steps end, and how long each is, s; of an adaptive phase, where some step ends.
@@ -129,60 +173,34 @@ impl Phase {
         let approach = from + (to - from) * fraction;
         let approach_rate = (to - from) / self.duration;
         let force = self.force.map(|[from, to]| from + (to - from) * fraction);
-        match self.motion {
-            Motion::Velocity(v) => Placement {
-                approach,
-                sliding: self.sliding + v * local,
-                sliding_rate: v,
-                approach_rate,
-                dt,
-                resolution: 0.0,
-                force,
-            },
-            Motion::Sinusoid { amplitude, cycles } => {
-                let angular = 2.0 * PI * cycles / self.duration;
-                // sin a - sin b = 2 cos((a + b)/2) sin((a - b)/2) keeps the digits of short steps.
-                let middle = (angular * (local - dt / 2.0)).cos();
-                let half = angular * dt / 2.0;
-                Placement {
-                    approach,
-                    sliding: self.sliding + amplitude * (angular * local).sin(),
-                    sliding_rate: amplitude * 2.0 * middle * half.sin() / dt,
-                    approach_rate,
-                    dt,
-                    resolution: 0.0,
-                    force,
-                }
-            }
-        }
+        let [gone, sliding_rate] = self.motion.way(local, dt, self.duration);
+        let sliding = self.sliding + gone;
+        Placement { approach, sliding, sliding_rate, approach_rate, dt, resolution: 0.0, force }
     }
 
     /// The velocities of approach and of sliding at the time `t`, m/s.
-    pub fn rates(&self, t: f64) -> [f64; 2] {
+    pub fn rates(&self, t: f64) -> (f64, Vector2<f64>) {
         let [from, to] = self.approach;
-        let sliding = match self.motion {
-            Motion::Velocity(velocity) => velocity,
-            Motion::Sinusoid { amplitude, cycles } => {
-                let angular = 2.0 * PI * cycles / self.duration;
-                amplitude * angular * (angular * (t - self.start)).cos()
-            }
-        };
-        [(to - from) / self.duration, sliding]
+        ((to - from) / self.duration, self.motion.velocity(t - self.start, self.duration))
     }
 
-    /// The least and the greatest sliding of the phase, m.
-    pub fn sliding_range(&self) -> [f64; 2] {
-        let mut places = vec![self.sliding, self.final_sliding()];
-        if let Motion::Sinusoid { amplitude, cycles } = self.motion {
-            // The crests of the sine, a quarter and three quarters through its first cycle.
-            places.extend((cycles >= 0.25).then_some(self.sliding + amplitude));
-            places.extend((cycles >= 0.75).then_some(self.sliding - amplitude));
+    /// The least and the greatest sliding of the phase along an axis, m.
+    pub fn sliding_range(&self, axis: usize) -> [f64; 2] {
+        let (start, end) = (self.sliding[axis], self.final_sliding()[axis]);
+        let mut places = vec![start, end];
+        if let Motion::Sinusoid { amplitude, cycles, phase } = self.motion {
+            // The crests of the sine: a quarter and three quarters through a cycle.
+            let (amplitude, first) = (amplitude[axis], phase[axis] / (2.0 * PI));
+            for (crest, sign) in [(0.25, 1.0), (0.75, -1.0)] {
+                let met = (first - crest).ceil() + crest <= first + cycles;
+                places.extend(met.then_some(start + amplitude * (sign - phase[axis].sin())));
+            }
         }
         [places.iter().copied().fold(f64::INFINITY, f64::min), places.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
     }
 
     /// The sliding at its end, m.
-    pub fn final_sliding(&self) -> f64 {
+    pub fn final_sliding(&self) -> Vector2<f64> {
         self.placement(self.end(), self.duration).sliding
     }
 }
@@ -226,34 +244,38 @@ mod tests {
         assert_eq!((marked, list[7].time), (vec![2, 3], 1.0 + 0.7));
     }
 
-    /// The sliding rate over a step is the difference quotient, also for a sinusoid.
+    /// The sliding rate over a step is the difference quotient, also for sinusoids, of which each direction has its own phase;
+    /// the range has the crests that are met.
     #[test]
     fn sliding_rate_is_the_difference_quotient() {
-        let motion = Motion::Sinusoid { amplitude: 2e-4, cycles: 1.25 };
-        let name = String::new();
-        let (start, duration, approach) = (2.0, 3.0, [0.0, 1.0]);
-        let (force, from_there) = (None, false);
-        let phase = Phase {
-            name,
-            start,
-            duration,
-            approach,
-            force,
-            from_there,
-            sliding: 0.4,
+        let x = |x| Vector2::new(x, 0.0);
+        let phase = |motion| Phase {
+            name: String::new(),
+            start: 2.0,
+            duration: 3.0,
+            approach: [0.0, 1.0],
+            force: None,
+            from_there: false,
+            sliding: Vector2::new(0.4, -0.1),
             motion,
             steps: vec![],
             adaptive: None,
         };
+        let sinusoid = |amplitude, cycles, phase| Motion::Sinusoid { amplitude, cycles, phase };
+        let along = phase(sinusoid(x(2e-4), 1.25, x(0.0)));
+        let circle = phase(sinusoid(Vector2::new(2e-4, 2e-4), 1.25, Vector2::new(0.0, PI / 2.0)));
         let (t, dt) = (3.1, 0.05);
-        let (now, before) = (phase.placement(t, dt), phase.placement(t - dt, dt));
-        assert!((now.sliding_rate - (now.sliding - before.sliding) / dt).abs() < 1e-14);
-        assert!((phase.final_sliding() - (0.4 + 2e-4)).abs() < 1e-16);
-        assert!((now.approach - 1.1 / 3.0).abs() < 1e-15);
-        assert_eq!(phase.sliding_range(), [0.4 - 2e-4, 0.4 + 2e-4]);
-        let quarter = Phase { motion: Motion::Sinusoid { amplitude: -0.1, cycles: 0.3 }, ..phase.clone() };
-        assert_eq!(quarter.sliding_range(), [0.4 - 0.1, 0.4]);
-        let back = Phase { motion: Motion::Velocity(-0.1), ..phase };
-        assert!((back.sliding_range()[0] - 0.1).abs() < 1e-15 && back.sliding_range()[1] == 0.4);
+        for phase in [&along, &circle] {
+            let (now, before) = (phase.placement(t, dt), phase.placement(t - dt, dt));
+            assert!((now.sliding_rate - (now.sliding - before.sliding) / dt).norm() < 1e-14);
+            assert!((now.approach - 1.1 / 3.0).abs() < 1e-15);
+        }
+        assert!((along.final_sliding() - Vector2::new(0.4 + 2e-4, -0.1)).norm() < 1e-16);
+        assert_eq!(along.sliding_range(0), [0.4 - 2e-4, 0.4 + 2e-4]);
+        let [least, most] = circle.sliding_range(1);
+        assert!((least + 0.1 + 4e-4).abs() < 1e-15 && (most + 0.1).abs() < 1e-15);
+        assert_eq!(phase(sinusoid(x(-0.1), 0.3, x(0.0))).sliding_range(0), [0.4 - 0.1, 0.4]);
+        let back = phase(Motion::Velocity(x(-0.1)));
+        assert!((back.sliding_range(0)[0] - 0.1).abs() < 1e-15 && back.sliding_range(0)[1] == 0.4);
     }
 }

@@ -54,7 +54,7 @@ fn solve_parts(comm: &SimpleCommunicator, scene: &Scene, Parts { mesh, shape }: 
     let Collected { history, ends, bulk } = collected;
     let after = doubts.after(scene, &history);
     let warnings = doubts.before.into_iter().chain(after).collect();
-    Ok(Solution { x: mesh.face.x, history, ends, bulk, counts, warnings })
+    Ok(Solution { x: mesh.face().places.iter().map(|place| place.x).collect(), history, ends, bulk, counts, warnings })
 }
 
 impl Solution {
@@ -78,10 +78,10 @@ pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
         time: report.time,
         phase: report.phase,
         approach: placement.approach,
-        sliding: placement.sliding,
+        sliding: placement.sliding.x,
         normal_force: totals.normal_force,
-        tangential_force: totals.tangential_force,
-        hysteretic_force: totals.hysteretic_force,
+        tangential_force: totals.tangential_force.x,
+        hysteretic_force: totals.hysteretic_force.x,
         contact_fraction: totals.contact_fraction,
         stick_fraction: totals.stick_fraction,
         max_penetration: totals.max_penetration,
@@ -101,9 +101,9 @@ pub fn frame(report: &mut Report<'_>) -> Result<InterfaceFrame> {
     let frame = InterfaceFrame {
         time: report.time,
         pressure: fields.pressure,
-        shear: fields.shear,
+        shear: fields.shear.iter().map(|q| q.x).collect(),
         gap: fields.gap,
-        slip_rate: fields.slip_rate,
+        slip_rate: fields.slip_rate.iter().map(|w| w.x).collect(),
         displacement_x: component(0),
         displacement_z: component(1),
     };

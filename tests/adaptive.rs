@@ -89,8 +89,11 @@ impl Observer for Told {
         self.steps.push(Target { time: report.time, dt: report.dt, bulk_output: false });
         let mut contact = report.problem.contact()?;
         let (totals, fields) = (contact.totals()?, contact.fields());
-        let forces = [totals.normal_force, totals.tangential_force, totals.hysteretic_force];
-        let all = forces.iter().chain(&fields.pressure).chain(&fields.shear).chain(&fields.slip_rate);
+        let forces = [totals.normal_force, totals.tangential_force.x, totals.hysteretic_force.x];
+        let all = forces
+            .iter()
+            .chain(&fields.pressure)
+            .chain(fields.shear.iter().chain(&fields.slip_rate).map(|vector| &vector.x));
         self.numbers.extend(all.map(|number| number.to_bits()));
         Ok(())
     }

@@ -9,11 +9,16 @@ use std::time::{Duration, Instant};
 
 use common::msh::write_msh;
 use common::program::{Run, assert_same, output_of, program};
-use mpjr::mesh::{Layer, Sides};
+use mpjr::mesh::{Layer, Mesh, Sides};
 use mpjr::output::checkpoint;
 
 /// A plate of 0.1 m on a soft layer of 0.3 m.
-const BODY: Layer = Layer { width: 1.0, depth: 0.4, cells: [40, 12], grading: 1.0, sides: Sides::Roller };
+const CELLS: [usize; 2] = [40, 12];
+
+/// The body of all of them.
+fn body() -> Mesh<2> {
+    Layer { strata: vec![PLATE], ..Layer::in_plane([1.0, 0.4], CELLS, Sides::Roller) }.mesh()
+}
 const PLATE: f64 = 0.1;
 
 const AS_LAYER: &str = "[layer]\nwidth = 1.0\ndepth = 0.4\ncells = [40, 12]\nsides = \"roller\"\n\
@@ -75,7 +80,7 @@ fn regions_of_a_mesh_are_strata_of_a_layer() {
     for (strategy, ranks) in [("condensed", 1), ("condensed", 2), ("monolithic", 1), ("monolithic", 2)] {
         let run =
             Run::new(&scene(AS_MESH, "region = \"soft\"")).set(format!("solver.strategy={strategy}")).ranks(ranks);
-        write_msh(&BODY.mesh_of_strata(&[PLATE]), BODY.cells, &["plate", "soft"], &run.directory().join("body.msh"));
+        write_msh(&body(), CELLS, &["plate", "soft"], &run.directory().join("body.msh"));
         let (_kept, mesh) = results(run);
         let [a, b] = [&layer, &mesh].map(|file| mpjr::output::reader::Results::open(file).unwrap());
         for column in ["normal_force", "tangential_force", "hysteretic_force"] {
@@ -99,7 +104,7 @@ fn a_tolerance_is_a_penalty_on_a_mesh_too() {
     let set = |run: Run| run.set("contact={ tolerance = 1e-3 }");
     let layer = set(Run::new(&scene(AS_LAYER, ""))).done();
     let run = set(Run::new(&scene(AS_MESH, "region = \"soft\"")));
-    write_msh(&BODY.mesh_of_strata(&[PLATE]), BODY.cells, &["plate", "soft"], &run.directory().join("body.msh"));
+    write_msh(&body(), CELLS, &["plate", "soft"], &run.directory().join("body.msh"));
     let mesh = run.done();
     for column in ["normal_force", "max_penetration"] {
         let (layer, mesh) = (layer.last(column), mesh.last(column));
@@ -124,12 +129,12 @@ fn strata_are_springs_in_series() {
 #[test]
 fn a_curved_face_meets_a_flat_indenter() {
     let solve = |bulge: f64, indenter: &str| {
-        let mut mesh = BODY.mesh_of_strata(&[PLATE]);
+        let mut mesh = body();
         mesh.nodes.iter_mut().for_each(|node| node.y -= bulge * (node.x - 0.45).powi(2));
         let run = Run::new(&scene(AS_MESH, "region = \"soft\"")).set(format!("indenter={indenter}"));
         // A parabola that is dragged far presses elsewhere; the bulge does not.
         let run = run.set("phase.drag.distance=1e-3");
-        write_msh(&mesh, BODY.cells, &["plate", "soft"], &run.directory().join("body.msh"));
+        write_msh(&mesh, CELLS, &["plate", "soft"], &run.directory().join("body.msh"));
         run.done()
     };
     let parabola = solve(0.0, "{ profile = \"parabola\", radius = 10.0, centre = 0.45 }");

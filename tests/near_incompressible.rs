@@ -6,7 +6,8 @@
 
 use std::f64::consts::PI;
 
-use mpjr::element::{bbar, quad4, tri3};
+use mpjr::element::Kind;
+use mpjr::element::solid::{Dilatation, Placed, row_major};
 use mpjr::mesh::{Cell, Layer, Sides};
 use mpjr::oracle;
 use nalgebra::{DMatrix, DVector};
@@ -20,8 +21,7 @@ enum Element {
 
 /// C_zz of the mesh over that of the closed form, less 1.
 fn error(element: Element, n: usize, poisson: f64) -> f64 {
-    let layer = Layer { width: 1.0, depth: 1.0, cells: [n, n], grading: 1.0, sides: Sides::Periodic };
-    let mesh = layer.mesh();
+    let mesh = Layer::in_plane([1.0, 1.0], [n, n], Sides::Periodic).mesh::<2>();
     let (shear, bulk) = (1.0, 2.0 * (1.0 + poisson) / (3.0 * (1.0 - 2.0 * poisson)));
     let size = 2 * mesh.unknown_nodes();
     let mut stiffness = DMatrix::<f64>::zeros(size, size);
@@ -34,16 +34,16 @@ fn error(element: Element, n: usize, poisson: f64) -> f64 {
             }
         }
     };
-    for cell in &mesh.cells {
-        let Cell::Quadrilateral(corners @ [a, b, c, d]) = *cell else { panic!("a quadrilateral") };
-        match element {
-            Element::Quad4 => add(&corners, quad4::stiffness(&mesh.points(corners)).with(shear, bulk).as_slice()),
-            Element::Bbar => add(&corners, bbar::stiffness(&mesh.points(corners)).with(shear, bulk).as_slice()),
-            Element::Triangles => {
-                for triangle in [[a, b, c], [a, c, d]] {
-                    add(&triangle, tri3::stiffness(&mesh.points(triangle)).with(shear, bulk).as_slice());
-                }
-            }
+    for quadrilateral in &mesh.cells {
+        let [a, b, c, d] = *quadrilateral.corners() else { panic!("a quadrilateral") };
+        let dilatation = if element == Element::Bbar { Dilatation::Mean } else { Dilatation::Pointwise };
+        let cells = match element {
+            Element::Triangles => [[a, b, c], [a, c, d]].map(|corners| Cell::new(Kind::Simplex, &corners)).to_vec(),
+            _ => vec![*quadrilateral],
+        };
+        for cell in cells {
+            let placed = Placed { shape: cell.shape(), corners: &mesh.places(&cell), dilatation };
+            add(cell.corners(), &row_major(&placed.stiffness().with(shear, bulk)));
         }
     }
     for (row, _) in mesh.held.iter().flatten().enumerate().filter(|(_, held)| **held) {
@@ -54,15 +54,16 @@ fn error(element: Element, n: usize, poisson: f64) -> f64 {
     let wave = |x: f64| (2.0 * PI * x).cos();
     // The consistent forces of the wave as the nodes see it; its amplitude on linear elements is exact in p.
     let mut force = DVector::zeros(size);
-    for edge in &mesh.face.edges {
-        let [p, q] = edge.ends.map(|end| wave(mesh.face.x[end]));
-        for (end, value) in edge.ends.iter().zip([(2.0 * p + q) / 6.0, (p + 2.0 * q) / 6.0]) {
-            force[2 * mesh.face.unknown[*end] as usize + 1] -= edge.length * value;
+    for edge in &mesh.face.facets {
+        let length = (edge.corners[1] - edge.corners[0]).norm();
+        let [p, q] = [0, 1].map(|end| wave(edge.corners[end].x));
+        for (end, value) in edge.nodes.iter().zip([(2.0 * p + q) / 6.0, (p + 2.0 * q) / 6.0]) {
+            force[2 * mesh.face.unknown[*end] as usize + 1] -= length * value;
         }
     }
     let u = stiffness.cholesky().unwrap().solve(&force);
     let indentation =
-        |(i, &unknown): (usize, &u32)| -u[2 * unknown as usize + 1] * wave(mesh.face.x[i]) * 2.0 / n as f64;
+        |(i, &unknown): (usize, &u32)| -u[2 * unknown as usize + 1] * wave(mesh.face.places[i].x) * 2.0 / n as f64;
     let compliance: f64 = mesh.face.unknown.iter().enumerate().map(indentation).sum();
     let exact =
         oracle::layer::Layer { depth: 1.0 }.compliance(2.0 * PI, oracle::solid::Moduli::elastic(shear, poisson)).zz.re;

@@ -78,8 +78,8 @@ impl Observer for Told {
         let mut told = vec![
             report.time,
             totals.normal_force,
-            totals.tangential_force,
-            totals.hysteretic_force,
+            totals.tangential_force.x,
+            totals.hysteretic_force.x,
             totals.contact_fraction,
             totals.stick_fraction,
             totals.max_penetration,
@@ -89,8 +89,11 @@ impl Observer for Told {
             energy.friction_dissipation,
             energy.penalty,
         ];
-        for field in [&fields.pressure, &fields.shear, &fields.gap, &fields.slip_rate] {
+        for field in [&fields.pressure, &fields.gap] {
             told.extend(field);
+        }
+        for field in [&fields.shear, &fields.slip_rate] {
+            told.extend(field.iter().map(|vector| vector.x));
         }
         told.extend(contact.displacement);
         if !self.face_only {

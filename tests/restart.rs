@@ -378,8 +378,8 @@ fn a_signal_while_it_starts() {
 #[test]
 fn files_that_have_changed_are_refused() {
     let put_mesh = |directory: &Path, grading: f64| {
-        let layer = Layer { width: 1.0, depth: 0.5, cells: [24, 8], grading, sides: Sides::Roller };
-        write_msh(&layer.mesh(), layer.cells, &["body"], &directory.join("body.msh"));
+        let layer = Layer { grading, ..Layer::in_plane([1.0, 0.5], [24, 8], Sides::Roller) };
+        write_msh(&layer.mesh(), [24, 8], &["body"], &directory.join("body.msh"));
     };
     let put_profile = |directory: &Path, height: f64| {
         let line = |k: usize| format!("{:?} {:?}\n", k as f64 / 24.0, 1e-3 * height * (k as f64 / 24.0 - 0.5).powi(2));

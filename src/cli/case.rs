@@ -14,7 +14,7 @@ use super::summary::Outcome;
 use crate::composition::{self, Compliances, Outline, Problem};
 use crate::error::{Error, Result};
 use crate::loading::Phase;
-use crate::mesh::Mesh;
+use crate::mesh::Source;
 use crate::output::{BulkPlan, HistoryRow, Metadata, Plan, Recorder, Status, checkpoint, clock, reader::Results};
 use crate::parallel::agree;
 use crate::petsc::Session;
@@ -134,7 +134,7 @@ pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<
 fn open(
     job: &Job<'_>,
     started: SystemTime,
-    (mesh, doubts): (&Mesh, &Doubts),
+    (mesh, doubts): (&Source<2>, &Doubts),
     phases: &[Phase],
     begun: Option<&Begun>,
 ) -> Result<Recorder> {
@@ -163,7 +163,7 @@ fn open(
     Ok(recorder)
 }
 
-fn plan(scene: &Scene, mesh: &Mesh, phases: &[Phase]) -> Plan {
+fn plan(scene: &Scene, mesh: &Source<2>, phases: &[Phase]) -> Plan {
     let frames = phases.iter().flat_map(|phase| &phase.steps).filter(|target| target.bulk_output).count();
     let steps = scene.steps() + frames;
     let ends = phases.len();
@@ -173,21 +173,22 @@ fn plan(scene: &Scene, mesh: &Mesh, phases: &[Phase]) -> Plan {
         phase_names: phases.iter().map(|phase| phase.name.clone()).collect(),
         energy: scene.output.energy,
         interface_rows: steps.checked_div(scene.output.interface_every).map_or(ends, |rows| rows + ends),
-        interface_x: mesh.face.x.clone(),
+        interface_x: mesh.face().places.iter().map(|place| place.x).collect(),
         bulk: bulk_plan(scene, mesh, phases),
     }
 }
 
 /// The bulk fields to expect; none when the scene asks for none.
-fn bulk_plan(scene: &Scene, mesh: &Mesh, phases: &[Phase]) -> Option<BulkPlan> {
+fn bulk_plan(scene: &Scene, mesh: &Source<2>, phases: &[Phase]) -> Option<BulkPlan> {
     if scene.output.bulk_at.is_empty() {
         return None;
     }
+    let mesh = mesh.mesh();
     Some(BulkPlan {
         frames: phases.iter().flat_map(|phase| &phase.steps).filter(|target| target.bulk_output).count(),
         axes: 2,
         coordinates: mesh.nodes.iter().flat_map(|node| [node.x, node.y]).collect(),
         corners: 4,
-        cells: mesh.cells.iter().flat_map(|cell| cell.four().map(i64::from)).collect(),
+        cells: mesh.cells.iter().flat_map(|cell| cell.as_multilinear()).map(i64::from).collect(),
     })
 }

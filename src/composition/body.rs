@@ -6,11 +6,12 @@ use std::path::Path;
 use mpi::topology::SimpleCommunicator;
 
 use crate::bulk::{Bulk, Part, Series};
-use crate::element::Quadrilateral;
+use crate::element::Kind;
+use crate::element::solid::Dilatation;
 use crate::error::{Error, Result};
 use crate::input;
 use crate::mesh::gmsh::{self, Flaw, Role, Roles, called};
-use crate::mesh::{Cell, Layer, Mesh, Sides};
+use crate::mesh::{Layer, Mesh, Sides, Source, Span};
 use crate::parallel::agree;
 use crate::petsc::Vector;
 use crate::rheology::Memory;
@@ -19,15 +20,15 @@ use crate::scene::{self, MeshFile, Scene};
 use crate::solve::{Body, Moduli, Region};
 
 /// The mesh of the scene at `file`, on every rank. A .msh file is read by rank 0 only. Collective.
-pub fn mesh(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Mesh> {
+pub fn mesh(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Source<2>> {
     match &scene.body {
-        scene::Body::Layer(layer) => Ok(layer_mesh(layer, scene)),
+        scene::Body::Layer(layer) => Ok(Source::Layer(layered(layer, scene))),
         scene::Body::Mesh(mesh) => {
             use mpi::traits::Communicator;
             let mine = if comm.rank() == 0 { bytes(mesh) } else { Ok(Vec::new()) };
             let mut bytes = agree(comm, mine)?;
             crate::parallel::broadcast(comm, 0, &mut bytes);
-            file_mesh(&bytes, mesh, scene, file)
+            file_mesh(&bytes, mesh, scene, file).map(Source::Mesh)
         }
     }
 }
@@ -75,8 +76,11 @@ pub fn outline(scene: &Scene, file: &Path) -> Result<Outline> {
 
 impl Outline {
     /// What the scene's body is, whose mesh is `mesh`.
-    pub fn of(scene: &Scene, mesh: &Mesh) -> Self {
-        scene.layer().map_or_else(|| Self::of_mesh(scene, mesh), Self::of_layer)
+    pub fn of(scene: &Scene, source: &Source<2>) -> Self {
+        match (scene.layer(), source) {
+            (Some(layer), _) => Self::of_layer(layer),
+            (None, source) => Self::of_mesh(scene, &source.mesh()),
+        }
     }
 
     fn of_layer(layer: &scene::Layer) -> Self {
@@ -90,34 +94,40 @@ impl Outline {
         }
     }
 
-    fn of_mesh(scene: &Scene, mesh: &Mesh) -> Self {
-        let triangles = mesh.cells.iter().filter(|cell| matches!(cell, Cell::Triangle(_))).count();
+    fn of_mesh(scene: &Scene, mesh: &Mesh<2>) -> Self {
+        let triangles = mesh.cells.iter().filter(|cell| cell.kind == Kind::Simplex).count();
         let face = &mesh.face;
         Self {
-            face: Stretch::of(scene, mesh),
+            face: Stretch::of_mesh(mesh),
             unknowns: mesh.free_components(),
             cells: [mesh.cells.len() - triangles, triangles],
-            penalty: penalty(scene, mesh).filter(|_| scene.contact.stiffness().is_none()),
-            height: height(mesh),
-            nodes: face.x.iter().zip(&face.recess).map(|(x, recess)| [*x, *recess]).collect(),
+            penalty: mesh_penalty(scene, mesh).filter(|_| scene.contact.stiffness().is_none()),
+            height: mesh.height(),
+            nodes: face.places.iter().map(|place| [place.x, -place.y]).collect(),
         }
     }
 }
 
 impl Stretch {
-    /// The face of the scene's mesh.
-    pub fn of(scene: &Scene, mesh: &Mesh) -> Self {
-        let face = &mesh.face;
-        let (edges, periodic) = (face.edges.len(), false);
-        match (scene.layer(), face.x.as_slice()) {
+    /// The face of the scene's body.
+    pub fn of(scene: &Scene, source: &Source<2>) -> Self {
+        match (scene.layer(), source) {
             (Some(layer), _) => Self::of_layer(layer),
-            (None, [from, .., to]) => {
-                let clamped = [0, face.x.len() - 1]
-                    .map(|end| (mesh.held[face.unknown[end] as usize] == [true; 2]).then_some(face.recess[end]));
-                Self { from: *from, to: *to, edges, periodic, clamped }
+            (None, source) => Self::of_mesh(&source.mesh()),
+        }
+    }
+
+    fn of_mesh(mesh: &Mesh<2>) -> Self {
+        let face = &mesh.face;
+        let (edges, periodic) = (face.facets.len(), false);
+        match face.places.as_slice() {
+            [from, .., to] => {
+                let clamped = [0, face.count() - 1]
+                    .map(|end| (mesh.held[face.unknown[end] as usize] == [true; 2]).then_some(-face.places[end].y));
+                Self { from: from.x, to: to.x, edges, periodic, clamped }
             }
             // No mesh has a face without an edge.
-            (None, _) => Self { from: 0.0, to: 0.0, edges, periodic, clamped: [None; 2] },
+            _ => Self { from: 0.0, to: 0.0, edges, periodic, clamped: [None; 2] },
         }
     }
 
@@ -139,10 +149,10 @@ impl Stretch {
 }
 
 /// The mesh of the scene, of a .msh file with these bytes where the scene wants one.
-pub fn mesh_of(bytes: &[u8], scene: &Scene) -> Result<Mesh> {
+pub fn mesh_of(bytes: &[u8], scene: &Scene) -> Result<Source<2>> {
     match &scene.body {
-        scene::Body::Layer(layer) => Ok(layer_mesh(layer, scene)),
-        scene::Body::Mesh(mesh) => file_mesh(bytes, mesh, scene, &mesh.file),
+        scene::Body::Layer(layer) => Ok(Source::Layer(layered(layer, scene))),
+        scene::Body::Mesh(mesh) => file_mesh(bytes, mesh, scene, &mesh.file).map(Source::Mesh),
     }
 }
 
@@ -151,20 +161,29 @@ pub(super) fn bytes(mesh: &MeshFile) -> Result<Vec<u8>> {
     input::bytes(&mesh.file)
 }
 
-fn layer_mesh(layer: &scene::Layer, scene: &Scene) -> Mesh {
-    let sides = match layer.sides {
-        scene::Sides::Periodic => Sides::Periodic,
-        scene::Sides::Free => Sides::Free,
-        scene::Sides::Roller => Sides::Roller,
-        scene::Sides::Fixed => Sides::Fixed,
-    };
-    let thicknesses: Vec<f64> = scene.materials.iter().filter_map(|material| material.thickness).collect();
-    let layer = Layer { width: layer.width, depth: layer.depth, cells: layer.cells, grading: layer.grading, sides };
-    layer.mesh_of_strata(&thicknesses)
+impl From<scene::Sides> for Sides {
+    fn from(sides: scene::Sides) -> Self {
+        match sides {
+            scene::Sides::Periodic => Self::Periodic,
+            scene::Sides::Free => Self::Free,
+            scene::Sides::Roller => Self::Roller,
+            scene::Sides::Fixed => Self::Fixed,
+        }
+    }
+}
+
+fn layered(layer: &scene::Layer, scene: &Scene) -> Layer {
+    Layer {
+        spans: vec![Span { width: layer.width, cells: layer.cells[0], sides: layer.sides.into() }],
+        depth: layer.depth,
+        rows: layer.cells[1],
+        grading: layer.grading,
+        strata: scene.materials.iter().filter_map(|material| material.thickness).collect(),
+    }
 }
 
 /// The mesh of a .msh file; what is wrong with it is an error of the scene, at the key that asks for it.
-fn file_mesh(bytes: &[u8], mesh: &MeshFile, scene: &Scene, file: &Path) -> Result<Mesh> {
+fn file_mesh(bytes: &[u8], mesh: &MeshFile, scene: &Scene, file: &Path) -> Result<Mesh<2>> {
     let name = mesh.file.file_name().unwrap_or_default().to_string_lossy();
     let roles = Roles {
         contact: mesh.contact.clone(),
@@ -187,7 +206,7 @@ fn file_mesh(bytes: &[u8], mesh: &MeshFile, scene: &Scene, file: &Path) -> Resul
         Error::scene(file, key, reason)
     })?;
     depth_allows(&built, scene, file)?;
-    match penalty(scene, &built) {
+    match mesh_penalty(scene, &built) {
         None => {}
         Some(penalty) if penalty.is_finite() && penalty > 0.0 => {}
         Some(penalty) => {
@@ -222,8 +241,8 @@ fn unknown(file: &str, role: Role, roles: &Roles, known: &[(i64, Option<String>)
 }
 
 /// The indenter does not pass the lowest point of the body.
-fn depth_allows(mesh: &Mesh, scene: &Scene, file: &Path) -> Result<()> {
-    let height = height(mesh);
+fn depth_allows(mesh: &Mesh<2>, scene: &Scene, file: &Path) -> Result<()> {
+    let height = mesh.height();
     match scene.phases.iter().find(|phase| phase.approach.is_some_and(|approach| approach >= height)) {
         Some(phase) => Err(Error::scene(
             file,
@@ -234,37 +253,38 @@ fn depth_allows(mesh: &Mesh, scene: &Scene, file: &Path) -> Result<()> {
     }
 }
 
-/// From the lowest node to the highest of the contact face, m.
-pub(super) fn height(mesh: &Mesh) -> f64 {
-    let low = mesh.nodes.iter().map(|node| node.y).fold(f64::INFINITY, f64::min);
-    let face = mesh.face.unknown.iter().map(|&node| mesh.nodes[node as usize].y);
-    face.fold(f64::NEG_INFINITY, f64::max) - low
+/// The stiffness of the contact, Pa/m, from the mesh of the scene where it says a tolerance; none = no penetration.
+pub fn penalty<const D: usize>(scene: &Scene, source: &Source<D>) -> Option<f64> {
+    match source {
+        Source::Mesh(mesh) => mesh_penalty(scene, mesh),
+        // That of a layer is known by now.
+        Source::Layer(_) => scene.contact.stiffness(),
+    }
 }
 
-/// The stiffness of the contact, Pa/m, from the mesh of the scene where it says a tolerance; none = no penetration.
-pub fn penalty(scene: &Scene, mesh: &Mesh) -> Option<f64> {
+fn mesh_penalty<const D: usize>(scene: &Scene, mesh: &Mesh<D>) -> Option<f64> {
     let tolerance = match scene.contact.penalty? {
         scene::Penalty::Stiffness(stiffness) => return Some(stiffness),
         scene::Penalty::Tolerance(tolerance) => tolerance,
     };
-    let edge = mesh.face.edges.iter().map(|edge| edge.length).fold(f64::INFINITY, f64::min);
+    let edge = mesh.face.shortest();
     let mut at_face = vec![false; mesh.unknown_nodes()];
     mesh.face.unknown.iter().for_each(|&node| at_face[node as usize] = true);
     let touches = |cell: usize| mesh.cell_unknowns(cell).corners().iter().any(|&node| at_face[node as usize]);
     let regions: BTreeSet<u16> = (0..mesh.cells.len()).filter(|&cell| touches(cell)).map(|c| mesh.regions[c]).collect();
     let materials: Vec<_> = regions.iter().map(|&region| &scene.materials[usize::from(region)]).collect();
-    Some(scene::penalty_on_mesh(tolerance, [edge, height(mesh)], &materials, scene::shortest_step(&scene.phases)))
+    Some(scene::penalty_on_mesh(tolerance, [edge, mesh.height()], &materials, scene::shortest_step(&scene.phases)))
 }
 
-/// What the scene's quadrilaterals are.
-pub fn quadrilateral(scene: &Scene) -> Quadrilateral {
+/// How the scene's cells take their dilatation.
+pub fn dilatation(scene: &Scene) -> Dilatation {
     let element = match &scene.body {
         scene::Body::Layer(layer) => layer.element,
         scene::Body::Mesh(mesh) => mesh.element,
     };
     match element {
-        scene::Element::Quad4 => Quadrilateral::Plain,
-        scene::Element::Quad4Bbar => Quadrilateral::MeanDilatation,
+        scene::Element::Quad4 => Dilatation::Pointwise,
+        scene::Element::Quad4Bbar => Dilatation::Mean,
     }
 }
 
@@ -314,7 +334,7 @@ impl Materials {
     }
 
     /// The body at rest. The first part carries the diagonal of the held unknowns.
-    pub fn bulk(&self, body: &Body, layout: &Vector) -> Result<Bulk> {
+    pub fn bulk<const D: usize>(&self, body: &Body<D>, layout: &Vector) -> Result<Bulk> {
         let part = |(p, series): (usize, &Option<Series>)| {
             let share = |region: &Region| Moduli {
                 shear: if region.shear_part == p { region.moduli.shear } else { 0.0 },

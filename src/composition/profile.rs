@@ -172,7 +172,8 @@ fn pressed_end(profile: &dyn Profile, scene: &Scene, face: Stretch) -> Option<Pr
     }
     let pressed = |phase: &Phase, time: f64| {
         let Placement { approach, sliding, .. } = phase.placement(time, 0.0);
-        let presses = |&&(x, recess): &&(f64, f64)| profile.at(x - sliding).is_ok_and(|h| h.height + recess < approach);
+        let presses =
+            |&&(x, recess): &&(f64, f64)| profile.at(x - sliding.x).is_ok_and(|h| h.height + recess < approach);
         ends.iter().find(presses).map(|&(x, _)| PressedEnd { x, time })
     };
     phases(scene, 0.0).iter().find_map(|phase| match phase.adaptive {
@@ -199,7 +200,7 @@ pub fn reach(scene: &Scene, face: Stretch) -> [f64; 2] {
     if face.periodic {
         return [face.from, face.to];
     }
-    let ranges = course(scene).iter().map(|phase| phase.sliding_range()).collect::<Vec<_>>();
+    let ranges = course(scene).iter().map(|phase| phase.sliding_range(0)).collect::<Vec<_>>();
     let least = ranges.iter().map(|range| range[0]).fold(0.0, f64::min);
     let greatest = ranges.iter().map(|range| range[1]).fold(0.0, f64::max);
     [face.from - greatest, face.to - least]

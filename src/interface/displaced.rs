@@ -1,6 +1,6 @@
 //! The interface half of the residual where displacements are the unknowns: by penalty and regularised friction.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{SMatrix, SVector};
 
 use super::{Interface, State};
 use crate::element::mpjr::{Relative, Traction};
@@ -8,43 +8,44 @@ use crate::error::{Error, Result};
 use crate::friction::Circumstances;
 use crate::loading::Placement;
 
-/// Displacements of the face's nodes, in the order of the face: x, z of each, m.
+/// Displacements of the face's nodes, in the order of the face: the components of each, m.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Surface {
+pub struct Trial {
     /// At the end of a step.
     pub end: Vec<f64>,
     /// At its beginning, where the state was accepted.
     pub beginning: Vec<f64>,
 }
 
-/// The residual of the face, internal minus external, N/m, per node: (x, z).
-pub type Residual = Vec<Vector2<f64>>;
+/// The residual of the face, internal minus external, N/m (N in space), per node.
+pub type Residual<const D: usize> = Vec<SVector<f64, D>>;
 
-/// The tangent of the face: the blocks of each node with itself and, under Gauss quadrature, along each edge.
+/// The tangent of the face: the blocks of each node with itself and, under Gauss quadrature, with those that it shares a facet
+/// with.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Tangent {
+pub struct Tangent<const D: usize> {
     /// One block per node, N/m per m.
-    pub diagonal: Vec<Matrix2<f64>>,
-    /// Per edge, the blocks (first, second end) and (second, first end); empty under nodal quadrature.
-    pub coupling: Vec<[Matrix2<f64>; 2]>,
+    pub diagonal: Vec<SMatrix<f64, D, D>>,
+    /// Per pair of [`Interface::pairs`], the block (first, second).
+    pub coupling: Vec<SMatrix<f64, D, D>>,
 }
 
-impl Surface {
-    /// At rest.
-    pub fn at_rest(nodes: usize) -> Self {
-        Self { end: vec![0.0; 2 * nodes], beginning: vec![0.0; 2 * nodes] }
+impl Trial {
+    /// At rest, of so many components.
+    pub fn at_rest(components: usize) -> Self {
+        Self { end: vec![0.0; components], beginning: vec![0.0; components] }
     }
 }
 
-impl Interface {
+impl<const D: usize> Interface<D> {
     /// out = the residual at the end of a step to `placement`.
     ///
     /// # Errors
     /// A domain error where the profile is not known.
-    pub fn residual(&mut self, placement: Placement, surface: &Surface, out: &mut Residual) -> Result<()> {
+    pub fn residual(&mut self, placement: Placement, trial: &Trial, out: &mut Residual<D>) -> Result<()> {
         out.clear();
-        out.resize(self.face.x.len(), Vector2::zeros());
-        for (i, (_, traction)) in self.answers(placement, surface)?.into_iter().enumerate() {
+        out.resize(self.face.count(), SVector::zeros());
+        for (i, (_, traction)) in self.answers(placement, trial)?.into_iter().enumerate() {
             let point = &self.points.all()[i];
             let force = traction.on_layer(&point.normal) * -point.weight;
             self.points.shares(i).iter().for_each(|&(node, share)| out[node] += force * share);
@@ -56,18 +57,21 @@ impl Interface {
     ///
     /// # Errors
     /// As for [`Self::residual`].
-    pub fn tangent(&mut self, placement: Placement, surface: &Surface, out: &mut Tangent) -> Result<()> {
+    pub fn tangent(&mut self, placement: Placement, trial: &Trial, out: &mut Tangent<D>) -> Result<()> {
         out.diagonal.clear();
-        out.diagonal.resize(self.face.x.len(), Matrix2::zeros());
+        out.diagonal.resize(self.face.count(), SMatrix::zeros());
         out.coupling.clear();
-        for (i, (_, traction)) in self.answers(placement, surface)?.into_iter().enumerate() {
+        out.coupling.resize(self.pairs.len(), SMatrix::zeros());
+        for (i, (_, traction)) in self.answers(placement, trial)?.into_iter().enumerate() {
             let block = traction.tangent * self.points.all()[i].weight;
             let shares = self.points.shares(i);
-            shares.iter().for_each(|&(node, share)| out.diagonal[node] += block * (share * share));
-            if let [(_, a), (_, b)] = shares {
-                // Two points an edge.
-                out.coupling.resize(self.face.edges.len(), [Matrix2::zeros(); 2]);
-                out.coupling[i / 2].iter_mut().for_each(|coupling| *coupling += block * (a * b));
+            for &(a, share) in shares {
+                out.diagonal[a] += block * (share * share);
+                for &(b, other) in shares.iter().filter(|(b, _)| *b != a) {
+                    if let Ok(pair) = self.pairs.binary_search(&(a, b)) {
+                        out.coupling[pair] += block * (share * other);
+                    }
+                }
             }
         }
         Ok(())
@@ -77,9 +81,9 @@ impl Interface {
     ///
     /// # Errors
     /// As for [`Self::residual`].
-    pub fn displaced(&mut self, placement: Placement, surface: &Surface) -> Result<Vec<State<2>>> {
-        let answers = self.answers(placement, surface)?;
-        let state = |((relative, traction), before): ((Relative<2>, Traction<2>), &State<2>)| {
+    pub fn displaced(&mut self, placement: Placement, trial: &Trial) -> Result<Vec<State<D>>> {
+        let answers = self.answers(placement, trial)?;
+        let state = |((relative, traction), before): ((Relative<D>, Traction<D>), &State<D>)| {
             let Traction { pressure, shear, sticks, .. } = traction;
             let (overlap, slip) = (relative.overlap, relative.slip);
             let mut state = State { pressure, shear, overlap, slip, sticks, slid: before.slid, ..State::default() };
@@ -100,18 +104,18 @@ impl Interface {
     ///
     /// # Errors
     /// As for [`Self::residual`].
-    pub fn noise(&mut self, placement: Placement, surface: &Surface) -> Result<f64> {
+    pub fn noise(&mut self, placement: Placement, trial: &Trial) -> Result<f64> {
         let Placement { approach, sliding_rate, dt, .. } = placement;
-        let answers = self.answers(placement, surface)?;
+        let answers = self.answers(placement, trial)?;
         let penalty = self.stiffness()?;
-        let square = |(i, (_, traction)): (usize, (Relative<2>, Traction<2>))| {
+        let square = |(i, (_, traction)): (usize, (Relative<D>, Traction<D>))| {
             let point = &self.points.all()[i];
-            let moved = self.points.at(i, &surface.end);
+            let moved = self.points.at(i, &trial.end);
             let normally = moved.dot(&point.normal);
             let height = self.clearance(i, 0.0);
             let length = normally.abs().max(approach.abs()).max(height.min(2.0 * approach.abs()));
             let slope = (traction.tangent - point.normal * point.normal.transpose() * penalty).norm();
-            let slid = (moved - point.normal * normally).norm().max(approach.abs()) + sliding_rate.abs() * dt;
+            let slid = (moved - point.normal * normally).norm().max(approach.abs()) + sliding_rate.norm() * dt;
             (point.weight * penalty * length).powi(2) + (point.weight * slope * slid).powi(2)
         };
         Ok(f64::EPSILON * answers.into_iter().enumerate().map(square).sum::<f64>().sqrt())
@@ -129,19 +133,19 @@ impl Interface {
     }
 
     /// How each point has moved, and the tractions there.
-    fn answers(&mut self, placement: Placement, surface: &Surface) -> Result<Vec<(Relative<2>, Traction<2>)>> {
+    fn answers(&mut self, placement: Placement, trial: &Trial) -> Result<Vec<(Relative<D>, Traction<D>)>> {
         self.place(placement)?;
         let penalty = self.stiffness()?;
         let law = self.friction();
-        let Placement { approach, sliding_rate, approach_rate, dt, resolution, .. } = placement;
-        let way = Vector2::new(sliding_rate, -approach_rate) * dt;
+        let Placement { approach, dt, resolution, .. } = placement;
+        let way = placement.way();
         let at = |slid| Circumstances { pressure: 0.0, dt, resolution: resolution * dt, slid };
-        let answer = |(i, point): (usize, &super::Point<2>)| {
+        let answer = |(i, point): (usize, &super::Point<D>)| {
             let normal = point.normal;
-            let (end, beginning) = (self.points.at(i, &surface.end), self.points.at(i, &surface.beginning));
+            let (end, beginning) = (self.points.at(i, &trial.end), self.points.at(i, &trial.beginning));
             let past = way - (end - beginning);
-            let elastic = law.map_or(Vector2::zeros(), |law| self.accepted[i].elastic(law));
-            let overlap = end.dot(&normal) - self.clearance(i, approach) * normal.y;
+            let elastic = law.map_or(SVector::zeros(), |law| self.accepted[i].elastic(law));
+            let overlap = end.dot(&normal) - self.clearance(i, approach) * normal[D - 1];
             let relative = Relative { overlap, slip: past - normal * normal.dot(&past) + elastic, normal };
             (relative, Traction::new(relative, penalty, law, at(self.accepted[i].slid)))
         };

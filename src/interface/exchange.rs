@@ -12,7 +12,7 @@
 //! the slip that it ends. Where the old q does, by more than the new one works along it, q has turned within the step, and their
 //! mean says nothing of when: then friction takes nothing. So what it takes never falls.
 
-use nalgebra::Vector2;
+use nalgebra::SVector;
 
 use super::{Interface, State};
 use crate::energy::FaceEnergy;
@@ -32,7 +32,7 @@ pub struct Exchange {
 
 impl Exchange {
     /// Of a face at rest, with the indenter where it begins.
-    pub fn new(interface: &mut Interface) -> Result<Self> {
+    pub fn new<const D: usize>(interface: &mut Interface<D>) -> Result<Self> {
         interface.place(Placement::default())?;
         Ok(Self { heights: heights(interface), ..Self::default() })
     }
@@ -43,18 +43,23 @@ impl Exchange {
     }
 
     /// Takes the account to the end of a step that is about to be committed.
-    pub fn advance(&mut self, interface: &mut Interface, place: Placement, states: &[State<2>]) -> Result<()> {
+    pub fn advance<const D: usize>(
+        &mut self,
+        interface: &mut Interface<D>,
+        place: Placement,
+        states: &[State<D>],
+    ) -> Result<()> {
         interface.place(place)?;
         let dt = place.dt;
-        let way = Vector2::new(place.sliding_rate, -place.approach_rate) * dt;
+        let way = place.way();
         let mut penalty = 0.0;
         let heights = heights(interface);
         for (i, (before, after)) in interface.states().iter().zip(states).enumerate() {
             let point = &interface.points().all()[i];
             let opened = before.overlap.min(0.0) - after.overlap.min(0.0);
-            let closed = point.normal.y * (place.approach_rate * dt - (heights[i] - self.heights[i])) + opened;
+            let closed = point.normal[D - 1] * (place.approach_rate * dt - (heights[i] - self.heights[i])) + opened;
             let (pressure, shear) = (0.5 * (before.pressure + after.pressure), 0.5 * (before.shear + after.shear));
-            let held = |state: &State<2>| interface.friction().map_or(Vector2::zeros(), |law| state.elastic(law));
+            let held = |state: &State<D>| interface.friction().map_or(SVector::zeros(), |law| state.elastic(law));
             let stored = held(after) - held(before);
             self.elastic += point.weight * shear.dot(&stored);
             let lost = after.slip - stored;
@@ -86,6 +91,6 @@ impl Exchange {
 }
 
 /// h over each point where the indenter was placed last, m.
-fn heights(interface: &Interface) -> Vec<f64> {
-    interface.points().elevations().iter().map(|elevation| elevation.height).collect()
+fn heights<const D: usize>(interface: &Interface<D>) -> Vec<f64> {
+    interface.points().heights().iter().map(|height| height.height).collect()
 }

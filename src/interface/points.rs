@@ -1,12 +1,12 @@
 //! Where the laws of the contact are evaluated.
 
-use nalgebra::SVector;
+use nalgebra::{SVector, Vector2};
 
 use crate::element::mpjr::Quadrature;
 use crate::error::Result;
 use crate::loading::Placement;
-use crate::mesh::Face;
-use crate::profile::{Elevation, Profile};
+use crate::mesh::{Axis, Face, Grid};
+use crate::profile::{Height, Surface};
 
 /// A point of the face where the laws are evaluated.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,115 +25,89 @@ pub struct Points<const D: usize> {
     /// Of point i, `shares[starts[i]..starts[i + 1]]`: nodes and what part of it each carries, which sum to 1.
     shares: Vec<(usize, f64)>,
     starts: Vec<usize>,
-    /// The points on either side, where points are nodes; none at the ends.
-    beside: Vec<[Option<usize>; 2]>,
-    /// After which the face repeats, m; none = it ends.
-    period: Option<f64>,
+    /// The grid that the points make, if they do.
+    grid: Option<Grid>,
     /// Of the profile over each point, with the indenter where it was placed last.
-    elevations: Vec<Elevation>,
-    /// The sliding that `elevations` hold for, m.
-    placed: Option<f64>,
+    heights: Vec<Height>,
+    /// The sliding that `heights` hold for, m.
+    placed: Option<Vector2<f64>>,
 }
 
-impl Points<2> {
+impl<const D: usize> Point<D> {
+    /// Where it is along the face, m.
+    pub fn along(&self) -> Vector2<f64> {
+        Vector2::from_fn(|axis, _| if axis + 1 < D { self.place[axis] } else { 0.0 })
+    }
+}
+
+impl<const D: usize> Points<D> {
     /// The points of a quadrature on a face.
-    pub fn new(face: &Face, quadrature: Quadrature) -> Self {
+    pub fn new(face: &Face<D>, quadrature: Quadrature) -> Self {
         match quadrature {
-            Quadrature::Nodal => Self::lumped(face),
-            Quadrature::Gauss => Self::of_edges(face),
+            Quadrature::Nodal => Self::nodes(face),
+            Quadrature::Gauss => Self::of_facets(face),
         }
     }
 
-    /// A field of the points carried along the face by `way`, m, between points by linear interpolation; none where that is
-    /// less than the distance of two points. Off the ends of an open face there is nothing.
-    pub fn carried(&self, field: &[SVector<f64, 2>], way: f64) -> Option<Vec<SVector<f64, 2>>> {
-        let x = |i: usize| self.all[i].place.x;
-        let count = field.len();
-        if count < 2 || way.abs() * (count - 1) as f64 <= (x(count - 1) - x(0)).abs() {
-            return None;
-        }
-        let period = self.period.unwrap_or(f64::INFINITY);
-        let value = |at: f64| {
-            let at = if period.is_finite() { x(0) + (at - x(0)).rem_euclid(period) } else { at };
-            let right = self.all.partition_point(|point| point.place.x <= at);
-            match (right.checked_sub(1), right < count) {
-                (Some(left), true) => {
-                    let share = (at - x(left)) / (x(right) - x(left));
-                    field[left] * (1.0 - share) + field[right] * share
-                }
-                (Some(left), false) if period.is_finite() => {
-                    let share = (at - x(left)) / (x(0) + period - x(left));
-                    field[left] * (1.0 - share) + field[0] * share
-                }
-                (Some(left), false) if at == x(left) => field[left],
-                _ => SVector::zeros(),
-            }
-        };
-        Some((0..count).map(|i| value(x(i) - way)).collect())
-    }
-
-    /// Two points to an edge.
-    fn of_edges(face: &Face) -> Self {
-        let (mut all, mut shares) = (Vec::new(), Vec::new());
-        for edge in &face.edges {
-            for point in Quadrature::Gauss.points(edge.length) {
-                let recess = point.shape[0] * face.recess[edge.ends[0]] + point.shape[1] * face.recess[edge.ends[1]];
-                let x = edge.start + point.shape[1] * edge.length * edge.tangent.x;
-                let normal = SVector::from([-edge.tangent.y, edge.tangent.x]);
-                all.push(Point { place: SVector::from([x, -recess]), normal, weight: point.weight });
-                shares.extend(edge.ends.into_iter().zip(point.shape));
+    /// Nodal quadrature: what each facet gives its corners; the normal of a node is the mean of its facets', by what they give it.
+    fn nodes(face: &Face<D>) -> Self {
+        let mut areas = vec![(SVector::<f64, D>::zeros(), 0.0); face.count()];
+        for facet in &face.facets {
+            for (&node, point) in facet.nodes.iter().zip(facet.at_nodes()) {
+                areas[node].0 += point.area;
+                areas[node].1 += point.area.norm();
             }
         }
-        let (starts, beside) = ((0..=all.len()).map(|i| 2 * i).collect(), vec![[None; 2]; all.len()]);
-        Self { all, shares, starts, beside, period: period(face), elevations: Vec::new(), placed: None }
-    }
-
-    /// Nodal quadrature: half of each edge at either end; the normal of a node is the mean of its edges', by their lengths.
-    fn lumped(face: &Face) -> Self {
-        let nodes = face.x.len();
-        let mut all: Vec<Point<2>> = (0..nodes)
-            .map(|node| {
-                let place = SVector::from([face.x[node], -face.recess[node]]);
-                Point { place, normal: SVector::zeros(), weight: 0.0 }
-            })
-            .collect();
-        let mut beside = vec![[None; 2]; nodes];
-        for edge in &face.edges {
-            for (&node, half) in edge.ends.iter().zip(Quadrature::Nodal.points(edge.length)) {
-                all[node].weight += half.weight;
-                all[node].normal += SVector::from([-edge.tangent.y, edge.tangent.x]) * half.weight;
-            }
-            let [left, right] = edge.ends;
-            (beside[left][1], beside[right][0]) = (Some(right), Some(left));
-        }
-        for point in &mut all {
+        let point = |(place, (area, weight)): (&SVector<f64, D>, (SVector<f64, D>, f64))| {
             // Straight up to the last bit on a flat face.
-            let [x, z] = [point.normal.x, point.normal.y];
-            point.normal = if x == 0.0 { SVector::from([0.0, z.signum()]) } else { point.normal.normalize() };
+            let leans = area.iter().take(D - 1).any(|component| *component != 0.0);
+            let normal =
+                if leans { area.normalize() } else { SVector::from_fn(|i, _| f64::from(u8::from(i + 1 == D))) };
+            Point { place: *place, normal, weight }
+        };
+        let all: Vec<_> = face.places.iter().zip(areas).map(point).collect();
+        let (shares, starts) = ((0..all.len()).map(|node| (node, 1.0)).collect(), (0..=all.len()).collect());
+        Self { all, shares, starts, grid: face.grid.clone(), heights: Vec::new(), placed: None }
+    }
+
+    /// Gauss points of each facet.
+    fn of_facets(face: &Face<D>) -> Self {
+        let (mut all, mut shares, mut starts) = (Vec::new(), Vec::new(), vec![0]);
+        for facet in &face.facets {
+            for point in facet.at_gauss_points() {
+                let place = facet.corners.iter().zip(&point.shape).map(|(corner, share)| corner * *share).sum();
+                let weight = point.area.norm();
+                all.push(Point { place, normal: point.area / weight, weight });
+                shares.extend(facet.nodes.iter().copied().zip(point.shape));
+                starts.push(shares.len());
+            }
         }
-        let (shares, starts) = ((0..nodes).map(|node| (node, 1.0)).collect(), (0..=nodes).collect());
-        Self { all, shares, starts, beside, period: period(face), elevations: Vec::new(), placed: None }
+        // In the plane they come in order of x, too.
+        let axes = |grid: &Grid| {
+            let places = all.iter().map(|point: &Point<D>| point.place[0]).collect();
+            vec![Axis { places, period: grid.axes[0].period }]
+        };
+        let grid = face.grid.as_ref().filter(|_| D == 2).map(|grid| Grid { axes: axes(grid) });
+        Self { all, shares, starts, grid, heights: Vec::new(), placed: None }
     }
 
     /// Evaluates the profile at the points, once per place of the indenter.
     ///
     /// # Errors
     /// A domain error where the profile is not known.
-    pub fn place(&mut self, profile: &dyn Profile, placement: Placement) -> Result<()> {
+    pub fn place(&mut self, profile: &dyn Surface, placement: Placement) -> Result<()> {
         if self.placed == Some(placement.sliding) {
             return Ok(());
         }
         self.placed = None;
-        self.elevations.clear();
+        self.heights.clear();
         for point in &self.all {
-            self.elevations.push(profile.at(point.place.x - placement.sliding)?);
+            self.heights.push(profile.at(point.along() - placement.sliding)?);
         }
         self.placed = Some(placement.sliding);
         Ok(())
     }
-}
 
-impl<const D: usize> Points<D> {
     /// All of them.
     pub fn all(&self) -> &[Point<D>] {
         &self.all
@@ -165,19 +139,47 @@ impl<const D: usize> Points<D> {
         }
     }
 
-    /// The points on either side of one in the sense of x; none at the ends, and none where points are not nodes.
-    pub fn beside(&self, i: usize) -> [Option<usize>; 2] {
-        self.beside[i]
+    /// The points on either side of one along an axis of the face; none at the ends, and none where points are not nodes of a grid.
+    pub fn beside(&self, i: usize, axis: usize) -> [Option<usize>; 2] {
+        match &self.grid {
+            Some(grid) if !self.share_nodes() => grid.beside(i, axis),
+            _ => [None; 2],
+        }
     }
 
     /// The profile over each point, where the indenter was placed last.
-    pub fn elevations(&self) -> &[Elevation] {
-        &self.elevations
+    pub fn heights(&self) -> &[Height] {
+        &self.heights
     }
-}
 
-/// After which a face repeats, m; none where it has ends.
-fn period(face: &Face) -> Option<f64> {
-    let last = face.edges.last()?;
-    (last.ends[1] == face.edges[0].ends[0]).then(|| last.start + last.length - face.edges[0].start)
+    /// A field of the points carried along the face by `way`, m, between points by linear interpolation; none where that is
+    /// less than the distance of two points, or where they make no grid. Off the ends of an open face there is nothing.
+    pub fn carried(&self, field: &[SVector<f64, D>], way: Vector2<f64>) -> Option<Vec<SVector<f64, D>>> {
+        let axes = &self.grid.as_ref()?.axes;
+        let spacing = |axis: &Axis| match axis.places.as_slice() {
+            [first, .., last] => (last - first) / (axis.places.len() - 1) as f64,
+            _ => f64::INFINITY,
+        };
+        if !axes.iter().zip(way.iter()).any(|(axis, way)| way.abs() > spacing(axis)) {
+            return None;
+        }
+        let mut carried = field.to_vec();
+        for (axis, (line, way)) in axes.iter().zip(way.iter()).enumerate().filter(|(_, (_, way))| **way != 0.0) {
+            carried = self.carried_along(&carried, axis, (line, *way));
+        }
+        Some(carried)
+    }
+
+    /// The same along one axis.
+    fn carried_along(&self, field: &[SVector<f64, D>], axis: usize, (line, way): (&Axis, f64)) -> Vec<SVector<f64, D>> {
+        let stride = self.grid.as_ref().map_or(1, |grid| grid.stride(axis));
+        let sources: Vec<_> = line.places.iter().map(|place| line.between(place - way)).collect();
+        let from = |node: usize| {
+            let at = node / stride % sources.len();
+            let first = node - at * stride;
+            let value = |(source, share): (usize, f64)| field[first + source * stride] * share;
+            sources[at].map_or(SVector::zeros(), |sources| sources.into_iter().map(value).sum())
+        };
+        (0..field.len()).map(from).collect()
+    }
 }

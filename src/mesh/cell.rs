@@ -1,42 +1,53 @@
 //! A cell of a mesh.
 
-/// The corners of a cell, counter-clockwise.
+use crate::element::{Kind, MOST_CORNERS, Shape};
+
+/// A kind of cell and its corners, in the order of its [`Shape`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Cell {
-    /// Three corners.
-    Triangle([u32; 3]),
-    /// Four corners.
-    Quadrilateral([u32; 4]),
+pub struct Cell<const D: usize> {
+    /// What it is.
+    pub kind: Kind,
+    /// Of which as many count as it has corners.
+    nodes: [u32; MOST_CORNERS],
 }
 
-impl Cell {
-    /// Three or four corners.
+impl<const D: usize> Cell<D> {
+    /// Of its corners, as many as the kind has.
+    pub fn new(kind: Kind, corners: &[u32]) -> Self {
+        let mut nodes = [0; MOST_CORNERS];
+        nodes.iter_mut().zip(corners).for_each(|(node, corner)| *node = *corner);
+        Self { kind, nodes }
+    }
+
+    /// Its shape functions.
+    pub fn shape(&self) -> &'static dyn Shape<D> {
+        self.kind.shape()
+    }
+
+    /// Its corners.
     pub fn corners(&self) -> &[u32] {
-        match self {
-            Self::Triangle(corners) => corners,
-            Self::Quadrilateral(corners) => corners,
-        }
+        &self.nodes[..self.shape().corners()]
     }
 
     /// The cell with each corner replaced.
-    pub fn map(self, to: impl FnMut(u32) -> u32) -> Self {
-        match self {
-            Self::Triangle(corners) => Self::Triangle(corners.map(to)),
-            Self::Quadrilateral(corners) => Self::Quadrilateral(corners.map(to)),
-        }
+    pub fn map(mut self, mut to: impl FnMut(u32) -> u32) -> Self {
+        let corners = self.shape().corners();
+        self.nodes[..corners].iter_mut().for_each(|node| *node = to(*node));
+        self
     }
 
-    /// The edges, each from one corner to the next.
-    pub fn edges(&self) -> impl Iterator<Item = (u32, u32)> {
-        let corners = self.corners();
-        (0..corners.len()).map(move |i| (corners[i], corners[(i + 1) % corners.len()]))
+    /// The corners of each side.
+    pub fn sides(&self) -> impl Iterator<Item = Vec<u32>> {
+        self.shape().sides().iter().map(|side| side.iter().map(|&corner| self.nodes[corner]).collect())
     }
 
-    /// Four corners; a triangle repeats its last one, as the result file has it.
-    pub fn four(self) -> [u32; 4] {
-        match self {
-            Self::Triangle([a, b, c]) => [a, b, c, c],
-            Self::Quadrilateral(corners) => corners,
+    /// As many corners as a quadrilateral, or a hexahedron, has; simplices repeat theirs, as the result file has it.
+    pub fn as_multilinear(&self) -> Vec<u32> {
+        let n = &self.nodes;
+        match (self.kind, D) {
+            (Kind::Simplex, 2) => vec![n[0], n[1], n[2], n[2]],
+            (Kind::Simplex, _) => vec![n[0], n[1], n[2], n[2], n[3], n[3], n[3], n[3]],
+            (Kind::Multilinear, _) => self.corners().to_vec(),
         }
     }
 }

@@ -3,69 +3,72 @@
 //! Every rank holds the whole topology (a few tens of bytes per cell); matrices and vectors are distributed.
 
 mod cell;
+mod face;
 pub mod gmsh;
 mod layer;
 mod partition;
 
 pub use cell::Cell;
-pub use layer::{Layer, Sides};
+pub use face::{Axis, Face, Facet, FacetPoint, Grid};
+pub use layer::{Layer, Sides, Span};
 pub use partition::Numbering;
 
-use nalgebra::Vector2;
+use nalgebra::SVector;
 
-/// A mesh of quadrilaterals and triangles, and its contact face.
+/// A mesh in the plane (x, z) or in space (x, y, z), and its contact face.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Mesh {
-    /// Undeformed coordinates x, z of the nodes, m; the contact face is at the top, z grows outward.
-    pub nodes: Vec<Vector2<f64>>,
+pub struct Mesh<const D: usize> {
+    /// Undeformed coordinates of the nodes, m; the contact face is at the top, z, the last, grows outward.
+    pub nodes: Vec<SVector<f64, D>>,
     /// The cells.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<Cell<D>>,
     /// Which material each cell is of, from 0.
     pub regions: Vec<u16>,
     /// The unknown that carries each node's displacement: its own, or that of the node it is a periodic image of.
     pub unknown: Vec<u32>,
     /// Which displacement components of each unknown are held at zero.
-    pub held: Vec<[bool; 2]>,
+    pub held: Vec<[bool; D]>,
     /// The contact face.
-    pub face: Face,
+    pub face: Face<D>,
 }
 
-/// The contact face: its nodes in order of x, and the edges between them. The body is below it.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Face {
-    /// The unknown of each face node.
-    pub unknown: Vec<u32>,
-    /// Undeformed x of each face node, m.
-    pub x: Vec<f64>,
-    /// How far each face node lies below the highest one, m; zero on a flat face.
-    pub recess: Vec<f64>,
-    /// The edges; on a periodic face the last one ends at the first node.
-    pub edges: Vec<Edge>,
+/// What a mesh is had from; a layer's is made when it is asked for, since its face alone is often enough.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Source<const D: usize> {
+    /// It is there.
+    Mesh(Mesh<D>),
+    /// To be made.
+    Layer(Layer),
 }
 
-/// An edge of the contact face.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Edge {
-    /// Indices into the face's nodes.
-    pub ends: [usize; 2],
-    /// x of the first end, m.
-    pub start: f64,
-    /// m
-    pub length: f64,
-    /// Unit vector from the first end to the second, in the sense of +x.
-    pub tangent: Vector2<f64>,
-}
+impl<const D: usize> Source<D> {
+    /// The mesh.
+    pub fn mesh(&self) -> Mesh<D> {
+        match self {
+            Self::Mesh(mesh) => mesh.clone(),
+            Self::Layer(layer) => layer.mesh(),
+        }
+    }
 
-impl Edge {
-    /// Its two directions, as (row, column) of face nodes.
-    pub fn directions(&self) -> [(usize, usize); 2] {
-        let [a, b] = self.ends;
-        [(a, b), (b, a)]
+    /// Its contact face.
+    pub fn face(&self) -> Face<D> {
+        match self {
+            Self::Mesh(mesh) => mesh.face.clone(),
+            Self::Layer(layer) => layer.face(),
+        }
+    }
+
+    /// From the lowest node to the highest of the contact face, m.
+    pub fn height(&self) -> f64 {
+        match self {
+            Self::Mesh(mesh) => mesh.height(),
+            Self::Layer(layer) => layer.depth,
+        }
     }
 }
 
-impl Mesh {
-    /// How many nodes carry unknowns; each has two.
+impl<const D: usize> Mesh<D> {
+    /// How many nodes carry unknowns; each has one for each direction.
     pub fn unknown_nodes(&self) -> usize {
         self.held.len()
     }
@@ -76,12 +79,20 @@ impl Mesh {
     }
 
     /// The coordinates of a cell's corners, m.
-    pub fn points<const N: usize>(&self, corners: [u32; N]) -> [Vector2<f64>; N] {
-        corners.map(|node| self.nodes[node as usize])
+    pub fn places(&self, cell: &Cell<D>) -> Vec<SVector<f64, D>> {
+        cell.corners().iter().map(|&node| self.nodes[node as usize]).collect()
     }
 
     /// A cell whose corners are the unknowns of its own.
-    pub fn cell_unknowns(&self, cell: usize) -> Cell {
+    pub fn cell_unknowns(&self, cell: usize) -> Cell<D> {
         self.cells[cell].map(|node| self.unknown[node as usize])
+    }
+
+    /// From the lowest node to the highest of the contact face, m.
+    pub fn height(&self) -> f64 {
+        let z = |node: &SVector<f64, D>| node[D - 1];
+        let low = self.nodes.iter().map(z).fold(f64::INFINITY, f64::min);
+        let face = self.face.unknown.iter().map(|&node| z(&self.nodes[node as usize]));
+        face.fold(f64::NEG_INFINITY, f64::max) - low
     }
 }

@@ -25,7 +25,7 @@ pub struct Numbering {
 
 impl Numbering {
     /// Distributes the mesh over the ranks of `comm`.
-    pub fn new(comm: &SimpleCommunicator, mesh: &Mesh) -> Result<Self> {
+    pub fn new<const D: usize>(comm: &SimpleCommunicator, mesh: &Mesh<D>) -> Result<Self> {
         let part = cell_parts(comm, mesh)?;
         let mut owner = vec![i32::MAX; mesh.unknown_nodes()];
         for (cell, &rank) in part.iter().enumerate() {
@@ -62,7 +62,7 @@ impl Numbering {
     }
 
     /// The blocks of each row of this rank: itself and its neighbours, own columns and others.
-    pub fn pattern(&self, mesh: &Mesh) -> petsc::Pattern {
+    pub fn pattern<const D: usize>(&self, mesh: &Mesh<D>) -> petsc::Pattern {
         let mut neighbours: Vec<Vec<i32>> = vec![Vec::new(); self.owned.len()];
         for cell in 0..mesh.cells.len() {
             let cell = mesh.cell_unknowns(cell);
@@ -83,12 +83,12 @@ impl Numbering {
                 (own as i32, (row.len() - own) as i32)
             })
             .unzip();
-        petsc::Pattern { own, other }
+        petsc::Pattern { block: D, own, other }
     }
 }
 
 /// The part of every cell, on every rank.
-fn cell_parts(comm: &SimpleCommunicator, mesh: &Mesh) -> Result<Vec<i32>> {
+fn cell_parts<const D: usize>(comm: &SimpleCommunicator, mesh: &Mesh<D>) -> Result<Vec<i32>> {
     let (ranks, total) = (comm.size() as usize, mesh.cells.len());
     if ranks == 1 {
         return Ok(vec![0; total]);
@@ -103,27 +103,28 @@ fn cell_parts(comm: &SimpleCommunicator, mesh: &Mesh) -> Result<Vec<i32>> {
     Ok(parts)
 }
 
-/// For each cell of the run, the cells that share an edge with it.
-fn neighbours(mesh: &Mesh, run: Range<usize>) -> Vec<Vec<i32>> {
-    let edges = |cell: usize| {
-        let list: Vec<_> = mesh.cell_unknowns(cell).edges().map(|(a, b)| (a.min(b), a.max(b))).collect();
-        list.into_iter()
+/// For each cell of the run, the cells that share a side with it.
+fn neighbours<const D: usize>(mesh: &Mesh<D>, run: Range<usize>) -> Vec<Vec<i32>> {
+    let sides = |cell: usize| {
+        let sorted = |mut side: Vec<u32>| {
+            side.sort_unstable();
+            side
+        };
+        mesh.cell_unknowns(cell).sides().map(sorted).collect::<Vec<_>>()
     };
-    let mut sharing: HashMap<(u32, u32), Vec<i32>> = HashMap::new();
-    for cell in run.clone() {
-        for edge in edges(cell) {
-            sharing.entry(edge).or_default();
-        }
+    let mut sharing: HashMap<Vec<u32>, Vec<i32>> = HashMap::new();
+    for side in run.clone().flat_map(sides) {
+        sharing.entry(side).or_default();
     }
     for cell in 0..mesh.cells.len() {
-        for edge in edges(cell) {
-            if let Some(list) = sharing.get_mut(&edge) {
+        for side in sides(cell) {
+            if let Some(list) = sharing.get_mut(&side) {
                 list.push(cell as i32);
             }
         }
     }
     run.map(|cell| {
-        let mut list: Vec<i32> = edges(cell).flat_map(|edge| sharing[&edge].iter().copied()).collect();
+        let mut list: Vec<i32> = sides(cell).iter().flat_map(|side| sharing[side].iter().copied()).collect();
         list.sort_unstable();
         list.dedup();
         list.retain(|&other| other as usize != cell);

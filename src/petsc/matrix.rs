@@ -1,26 +1,28 @@
-//! Distributed sparse matrices of 2 x 2 node blocks.
+//! Distributed sparse matrices of square node blocks.
 
 use std::mem::ManuallyDrop;
 use std::ptr::null_mut;
 
 use mpi::topology::AsCommunicator;
 use mpi::traits::AsRaw;
-use nalgebra::Matrix2;
+use nalgebra::SMatrix;
 
 use super::error::check;
 use super::ffi;
 use super::vector::Vector;
 use crate::error::Result;
 
-/// How many 2 x 2 blocks each of this rank's node rows holds, split at the rank's own columns.
+/// How many blocks each of this rank's node rows holds, split at the rank's own columns.
 pub struct Pattern {
+    /// Unknowns of a node.
+    pub block: usize,
     /// Blocks in columns that this rank owns, per node row.
     pub own: Vec<i32>,
     /// Blocks in columns that other ranks own, per node row.
     pub other: Vec<i32>,
 }
 
-/// A square sparse matrix with two unknowns per node; rows are distributed like the vectors.
+/// A square sparse matrix with as many unknowns to a node as its pattern says; rows are distributed like the vectors.
 pub struct Matrix {
     raw: ffi::Mat,
 }
@@ -28,7 +30,7 @@ pub struct Matrix {
 impl Matrix {
     /// An empty matrix whose rows on this rank hold the blocks that `pattern` counts.
     pub fn new(comm: &impl AsCommunicator, pattern: &Pattern) -> Result<Self> {
-        let local = 2 * pattern.own.len() as ffi::PetscInt;
+        let (local, block) = ((pattern.block * pattern.own.len()) as ffi::PetscInt, pattern.block as ffi::PetscInt);
         let mut raw = null_mut();
         // SAFETY: a live communicator and a place for the handle; the counts have one entry per local block row.
         unsafe {
@@ -37,7 +39,7 @@ impl Matrix {
             check(ffi::MatSetSizes(raw, local, local, -1, -1))?;
             check(ffi::MatSetType(raw, c"aij".as_ptr()))?;
             let (own, other) = (pattern.own.as_ptr(), pattern.other.as_ptr());
-            check(ffi::MatXAIJSetPreallocation(raw, 2, own, other, std::ptr::null(), std::ptr::null()))?;
+            check(ffi::MatXAIJSetPreallocation(raw, block, own, other, std::ptr::null(), std::ptr::null()))?;
             Ok(matrix)
         }
     }
@@ -71,10 +73,9 @@ impl Matrix {
         Ok(Self { raw })
     }
 
-    /// Adds the dense `values` (row-major, 2n x 2n) at the block rows and columns of `nodes` (global). Not collective;
+    /// Adds the dense `values` (row-major, over all components of n nodes) at the block rows and columns of `nodes` (global). Not collective;
     /// [`Self::assemble`] afterwards.
     pub fn add_blocks(&mut self, nodes: &[i32], values: &[f64]) -> Result<()> {
-        debug_assert_eq!(values.len(), 4 * nodes.len() * nodes.len());
         let count = nodes.len() as ffi::PetscInt;
         // SAFETY: `count` block rows and columns and their values.
         check(unsafe {
@@ -91,23 +92,32 @@ impl Matrix {
     }
 
     /// Replaces one block. Not collective; [`Self::assemble`] afterwards.
-    pub fn insert_block(&mut self, row: i32, column: i32, block: &Matrix2<f64>) -> Result<()> {
-        let values = [block[(0, 0)], block[(0, 1)], block[(1, 0)], block[(1, 1)]];
-        // SAFETY: one block row, one block column and four values.
+    pub fn insert_block<const D: usize>(&mut self, row: i32, column: i32, block: &SMatrix<f64, D, D>) -> Result<()> {
+        let values = block.transpose();
+        // SAFETY: one block row, one block column and their values, by rows.
         check(unsafe {
-            ffi::MatSetValuesBlocked(self.raw, 1, &row, 1, &column, values.as_ptr(), ffi::InsertMode_INSERT_VALUES)
+            ffi::MatSetValuesBlocked(
+                self.raw,
+                1,
+                &row,
+                1,
+                &column,
+                values.as_slice().as_ptr(),
+                ffi::InsertMode_INSERT_VALUES,
+            )
         })
     }
 
     /// One block of a row that this rank owns; zero where the pattern has none. Not collective.
-    pub fn block(&self, row: i32, column: i32) -> Result<Matrix2<f64>> {
-        let (rows, columns) = ([2 * row, 2 * row + 1], [2 * column, 2 * column + 1]);
-        let mut values = [0.0; 4];
-        // SAFETY: two rows, two columns and a place for four values.
+    pub fn block<const D: usize>(&self, row: i32, column: i32) -> Result<SMatrix<f64, D, D>> {
+        let [rows, columns] = [row, column].map(|node| std::array::from_fn::<_, D, _>(|i| D as i32 * node + i as i32));
+        let (mut values, count) = (SMatrix::<f64, D, D>::zeros(), D as ffi::PetscInt);
+        // SAFETY: as many rows and columns, and a place for their values, by rows.
         unsafe {
-            check(ffi::MatGetValues(self.raw, 2, rows.as_ptr(), 2, columns.as_ptr(), values.as_mut_ptr()))?;
+            let place = values.as_mut_slice().as_mut_ptr();
+            check(ffi::MatGetValues(self.raw, count, rows.as_ptr(), count, columns.as_ptr(), place))?;
         }
-        Ok(Matrix2::from_row_slice(&values))
+        Ok(values.transpose())
     }
 
     /// Makes what was added or inserted part of the matrix.
@@ -168,12 +178,12 @@ impl Matrix {
         }
     }
 
-    /// Gives algebraic multigrid the rigid-body modes; `coordinates` holds x, z of each local node.
-    pub fn set_near_null_space(&mut self, coordinates: &mut Vector) -> Result<()> {
+    /// Gives algebraic multigrid the rigid-body modes; `coordinates` holds `block` numbers for each local node.
+    pub fn set_near_null_space(&mut self, coordinates: &mut Vector, block: usize) -> Result<()> {
         let mut space = null_mut();
-        // SAFETY: a live vector with block size 2; the matrix takes a reference and ours is dropped.
+        // SAFETY: a live vector of whole blocks; the matrix takes a reference and ours is dropped.
         unsafe {
-            check(ffi::VecSetBlockSize(coordinates.raw(), 2))?;
+            check(ffi::VecSetBlockSize(coordinates.raw(), block as ffi::PetscInt))?;
             check(ffi::MatNullSpaceCreateRigidBody(coordinates.raw(), &mut space))?;
             let code = ffi::MatSetNearNullSpace(self.raw, space);
             ffi::MatNullSpaceDestroy(&mut space);

@@ -5,6 +5,7 @@ pub mod profilometer;
 mod rough;
 mod sampled;
 mod smooth;
+mod surface;
 mod survey;
 
 use crate::error::Result;
@@ -13,6 +14,7 @@ pub use expression::Formula;
 pub use rough::{Rms, Rough, Roughness};
 pub use sampled::{BLEND, Point, Sampled, WALL};
 pub use smooth::{Circle, Harmonic, Parabola, Wedge};
+pub use surface::{Extruded, Height, Surface};
 pub use survey::Survey;
 
 /// A rigid profile.

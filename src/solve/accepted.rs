@@ -9,11 +9,11 @@ use crate::petsc::Step;
 use crate::snapshot::Snapshot;
 
 /// The face, known whole on every rank.
-pub struct AcceptedFace {
+pub struct AcceptedFace<const D: usize> {
     /// Its points and their states.
-    pub interface: Interface,
+    pub interface: Interface<D>,
     phase: Option<Phase>,
-    /// Of each node, x, z, m.
+    /// Of each node, m.
     displacement: Vec<f64>,
     /// Over the last step, m/s.
     rate: Vec<f64>,
@@ -26,10 +26,10 @@ pub struct AcceptedFace {
     exchange: Option<Exchange>,
 }
 
-impl AcceptedFace {
+impl<const D: usize> AcceptedFace<D> {
     /// At rest.
-    pub fn new(interface: Interface) -> Self {
-        let at_rest = vec![0.0; 2 * interface.face().x.len()];
+    pub fn new(interface: Interface<D>) -> Self {
+        let at_rest = vec![0.0; D * interface.face().count()];
         let (rate, displacement) = (at_rest.clone(), at_rest);
         Self { interface, phase: None, displacement, rate, time: 0.0, dt: 1.0, origin: [0.0; 2], exchange: None }
     }
@@ -60,7 +60,7 @@ impl AcceptedFace {
         Ok((step.t - 1.25 * step.dt > self.phase()?.start).then_some(self.dt))
     }
 
-    /// Displacements of the nodes, x, z of each, m.
+    /// Displacements of the nodes, component by component, m.
     pub fn displacement(&self) -> &[f64] {
         &self.displacement
     }
@@ -85,7 +85,7 @@ impl AcceptedFace {
     pub fn commit(
         &mut self,
         (time, placement): (f64, Placement),
-        states: Vec<State<2>>,
+        states: Vec<State<D>>,
         displacement: Vec<f64>,
     ) -> Result<()> {
         for ((rate, new), old) in self.rate.iter_mut().zip(&displacement).zip(&self.displacement) {
@@ -111,7 +111,7 @@ impl AcceptedFace {
 
     /// The contact.
     pub fn contact(&mut self) -> Contact<'_> {
-        Contact { interface: &mut self.interface, displacement: &self.displacement, dt: self.dt }
+        Contact { face: &mut self.interface, displacement: &self.displacement, dt: self.dt }
     }
 
     /// Adds it to a snapshot.

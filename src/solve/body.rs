@@ -1,14 +1,13 @@
 //! The body as a distributed mesh: its stiffness, and its fields for output.
 
 use mpi::topology::SimpleCommunicator;
-use nalgebra::{SVector, Vector4};
+use nalgebra::SVector;
 
 use super::BulkFields;
 use crate::bulk::Bulk;
-use crate::element::plane::{Answer, Split};
-use crate::element::{Quadrilateral, bbar, quad4, tri3};
+use crate::element::solid::{Answer, Dilatation, Placed, Split, Stress, row_major};
 use crate::error::Result;
-use crate::mesh::{Cell, Mesh, Numbering};
+use crate::mesh::{Cell, Mesh, Numbering, Source};
 use crate::petsc::{Gather, Matrix, Pattern, Vector};
 use crate::snapshot::NaturalOrder;
 
@@ -40,18 +39,40 @@ impl Region {
     }
 }
 
-/// A mesh and what it is made of.
+/// A body: where its mesh is had from, and what it is made of.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Solid {
+pub struct Solid<const D: usize> {
     /// The mesh.
-    pub mesh: Mesh,
-    /// What its quadrilaterals are.
-    pub quadrilateral: Quadrilateral,
+    pub source: Source<D>,
+    /// How its cells take their dilatation; those of constant strain know but one way.
+    pub dilatation: Dilatation,
     /// What its regions are made of.
     pub regions: Vec<Region>,
 }
 
-impl Solid {
+impl<const D: usize> Solid<D> {
+    /// Its cells.
+    pub fn cells(&self) -> Cells<D> {
+        Cells { mesh: self.source.mesh(), dilatation: self.dilatation, regions: self.regions.clone() }
+    }
+
+    /// One column of a layer that repeats in all directions of its face, and how many there are along each; none of any other body.
+    pub fn column(&self) -> Option<(Cells<D>, Vec<usize>)> {
+        let Source::Layer(layer) = &self.source else { return None };
+        let column = Self { source: Source::Layer(layer.column()), ..self.clone() };
+        layer.periodic_counts().map(|counts| (column.cells(), counts))
+    }
+}
+
+/// The cells of a mesh and what they are made of.
+pub struct Cells<const D: usize> {
+    /// The mesh.
+    pub mesh: Mesh<D>,
+    dilatation: Dilatation,
+    regions: Vec<Region>,
+}
+
+impl<const D: usize> Cells<D> {
     /// What stands on the diagonal of held rows: a modulus, Pa.
     pub fn diagonal(&self) -> f64 {
         self.regions[0].moduli.shear
@@ -62,57 +83,60 @@ impl Solid {
         self.regions[usize::from(self.mesh.regions[cell])]
     }
 
-    /// The split stiffness of a quadrilateral.
-    pub fn quadrilateral(&self, corners: [u32; 4]) -> Split<8> {
-        let points = self.mesh.points(corners);
-        match self.quadrilateral {
-            Quadrilateral::Plain => quad4::stiffness(&points),
-            Quadrilateral::MeanDilatation => bbar::stiffness(&points),
-        }
+    /// The split stiffness of a cell.
+    pub fn split(&self, cell: usize) -> Split<D> {
+        self.placed(cell, |placed| placed.stiffness())
+    }
+
+    /// What is asked of a cell where it lies.
+    fn placed<T>(&self, cell: usize, ask: impl FnOnce(Placed<'_, D>) -> T) -> T {
+        let cell = &self.mesh.cells[cell];
+        ask(Placed { shape: cell.shape(), corners: &self.mesh.places(cell), dilatation: self.dilatation })
     }
 }
 
 /// A solid distributed over the ranks of a communicator.
-pub struct Body {
-    solid: Solid,
+pub struct Body<const D: usize> {
+    cells: Cells<D>,
     numbering: Numbering,
     pattern: Pattern,
     comm: SimpleCommunicator,
     /// What output needs, made when first asked for.
-    recovery: Option<Recovery>,
+    recovery: Option<Recovery<D>>,
 }
 
 /// The cells around this rank's nodes, and the displacements of their corners.
-struct Recovery {
+struct Recovery<const D: usize> {
     cells: Vec<usize>,
     /// Per cell, its corners' places in the gathered displacements (by node).
-    places: Vec<Cell>,
+    places: Vec<Cell<D>>,
     gather: Gather,
     gathered: usize,
 }
 
-impl Body {
+impl<const D: usize> Body<D> {
     /// Distributes the solid.
-    pub fn new(comm: SimpleCommunicator, solid: Solid) -> Result<Self> {
-        let numbering = Numbering::new(&comm, &solid.mesh)?;
-        let pattern = numbering.pattern(&solid.mesh);
-        Ok(Self { solid, numbering, pattern, comm, recovery: None })
+    pub fn new(comm: SimpleCommunicator, solid: &Solid<D>) -> Result<Self> {
+        let cells = solid.cells();
+        let numbering = Numbering::new(&comm, &cells.mesh)?;
+        let pattern = numbering.pattern(&cells.mesh);
+        Ok(Self { cells, numbering, pattern, comm, recovery: None })
     }
 
     /// The mesh.
-    pub fn mesh(&self) -> &Mesh {
-        &self.solid.mesh
+    pub fn mesh(&self) -> &Mesh<D> {
+        &self.cells.mesh
     }
 
     /// The stiffness at the instantaneous moduli.
     pub fn elastic(&self) -> Result<Matrix> {
-        let moduli: Vec<Moduli> = self.solid.regions.iter().map(|region| region.moduli).collect();
-        self.stiffness(&moduli, self.solid.diagonal())
+        let moduli: Vec<Moduli> = self.cells.regions.iter().map(|region| region.moduli).collect();
+        self.stiffness(&moduli, self.cells.diagonal())
     }
 
     /// What it is made of.
-    pub fn solid(&self) -> &Solid {
-        &self.solid
+    pub fn cells(&self) -> &Cells<D> {
+        &self.cells
     }
 
     /// The ranks that it is distributed over.
@@ -127,13 +151,13 @@ impl Body {
 
     /// A zero vector of the unknowns.
     pub fn vector(&self) -> Result<Vector> {
-        Vector::new(&self.comm, 2 * self.numbering.owned.len())
+        Vector::new(&self.comm, D * self.numbering.owned.len())
     }
 
     /// The order of the mesh, for vectors of the unknowns.
     pub fn natural_order(&self, layout: &Vector) -> Result<NaturalOrder> {
-        let global: Vec<i32> = self.numbering.global.iter().flat_map(|&node| [2 * node, 2 * node + 1]).collect();
-        NaturalOrder::new(&self.comm, layout, &global, 2 * self.numbering.owned.start)
+        let global = rows_of::<D>(self.numbering.global.iter().copied());
+        NaturalOrder::new(&self.comm, layout, &global, D * self.numbering.owned.start)
     }
 
     /// G K_dev + K K_vol with the moduli of each region, and `diagonal` for the held unknowns.
@@ -142,34 +166,25 @@ impl Body {
     pub fn stiffness(&self, moduli: &[Moduli], diagonal: f64) -> Result<Matrix> {
         let mut matrix = Matrix::new(&self.comm, &self.pattern)?;
         for &cell in &self.numbering.cells {
-            let Moduli { shear, bulk } = moduli[usize::from(self.solid.mesh.regions[cell])];
+            let Moduli { shear, bulk } = moduli[usize::from(self.cells.mesh.regions[cell])];
             let global = |node: u32| self.numbering.global[self.mesh().unknown[node as usize] as usize];
-            // Column-major and symmetric, so row-major too.
-            match self.solid.mesh.cells[cell] {
-                Cell::Triangle(corners) => {
-                    let stiffness = tri3::stiffness(&self.solid.mesh.points(corners)).with(shear, bulk);
-                    matrix.add_blocks(&corners.map(global), stiffness.as_slice())?;
-                }
-                Cell::Quadrilateral(corners) => {
-                    let stiffness = self.solid.quadrilateral(corners).with(shear, bulk);
-                    matrix.add_blocks(&corners.map(global), stiffness.as_slice())?;
-                }
-            }
+            let corners: Vec<i32> = self.cells.mesh.cells[cell].corners().iter().map(|&node| global(node)).collect();
+            matrix.add_blocks(&corners, &row_major(&self.cells.split(cell).with(shear, bulk)))?;
         }
         matrix.assemble()?;
         matrix.fix(&self.held(), diagonal)?;
         Ok(matrix)
     }
 
-    /// The rigid-body modes' coordinates: x, z of each of this rank's nodes.
+    /// The rigid-body modes' coordinates: those of each of this rank's nodes.
     pub fn coordinates(&self) -> Result<Vector> {
-        let mut place = vec![0; self.solid.mesh.unknown_nodes()];
-        for (node, &unknown) in self.solid.mesh.unknown.iter().enumerate().rev() {
+        let mut place = vec![0; self.cells.mesh.unknown_nodes()];
+        for (node, &unknown) in self.cells.mesh.unknown.iter().enumerate().rev() {
             place[unknown as usize] = node;
         }
         let mut vector = self.vector()?;
-        for (entry, &unknown) in vector.view_mut()?.chunks_exact_mut(2).zip(&self.numbering.unknowns) {
-            entry.copy_from_slice(self.solid.mesh.nodes[place[unknown as usize]].as_slice());
+        for (entry, &unknown) in vector.view_mut()?.chunks_exact_mut(D).zip(&self.numbering.unknowns) {
+            entry.copy_from_slice(self.cells.mesh.nodes[place[unknown as usize]].as_slice());
         }
         Ok(vector)
     }
@@ -182,10 +197,10 @@ impl Body {
         Ok(values)
     }
 
-    fn recovery(&mut self, layout: &Vector) -> Result<&mut Recovery> {
+    fn recovery(&mut self, layout: &Vector) -> Result<&mut Recovery<D>> {
         match &mut self.recovery {
             Some(recovery) => Ok(recovery),
-            place => Ok(place.insert(Recovery::new(&self.solid.mesh, &self.numbering, layout)?)),
+            place => Ok(place.insert(Recovery::new(&self.cells.mesh, &self.numbering, layout)?)),
         }
     }
 
@@ -204,13 +219,13 @@ impl Body {
     pub fn fields(&mut self, u: &Vector, effective: &[Vec<f64>]) -> Result<BulkFields> {
         self.recovery(u)?;
         let Some(recovery) = &self.recovery else { return Ok(BulkFields::default()) };
-        let mut sums = vec![(Vector4::<f64>::zeros(), 0.0); self.numbering.owned.len()];
+        let mut sums = vec![(Stress::zeros(), 0.0); self.numbering.owned.len()];
         for (&cell, places) in recovery.cells.iter().zip(&recovery.places) {
-            let region = self.solid.region(cell);
+            let region = self.cells.region(cell);
             let answers = [(region.moduli.shear, region.shear_part), (region.moduli.bulk, region.bulk_part)]
                 .map(|(modulus, part)| (modulus, effective[part].as_slice()));
-            let stress = corner_stress(&self.solid, cell, places, answers);
-            for (&unknown, stress) in self.solid.mesh.cell_unknowns(cell).corners().iter().zip(stress) {
+            let stress = corner_stress(&self.cells, cell, places, answers);
+            for (&unknown, stress) in self.cells.mesh.cell_unknowns(cell).corners().iter().zip(stress) {
                 if let Some(local) = self.numbering.local(unknown) {
                     sums[local].0 += stress;
                     sums[local].1 += 1.0;
@@ -219,10 +234,10 @@ impl Body {
         }
         let values = u.view()?;
         let mut fields = BulkFields::default();
-        for (node, &unknown) in self.solid.mesh.unknown.iter().enumerate() {
+        for (node, &unknown) in self.cells.mesh.unknown.iter().enumerate() {
             if let Some(local) = self.numbering.local(unknown) {
                 fields.nodes.push(node);
-                fields.displacement.push([values[2 * local], values[2 * local + 1]]);
+                fields.displacement.push(in_space::<D>(&values[D * local..][..D]));
                 fields.stress.push((sums[local].0 / sums[local].1).into());
             }
         }
@@ -232,42 +247,49 @@ impl Body {
     /// The held unknowns that this rank owns, as global row numbers.
     fn held(&self) -> Vec<i32> {
         let rows = |&unknown: &u32| {
-            let (global, held) = (self.numbering.global[unknown as usize], self.solid.mesh.held[unknown as usize]);
-            (0..2).filter(move |&component| held[component]).map(move |component| 2 * global + component as i32)
+            let (global, held) = (self.numbering.global[unknown as usize], self.cells.mesh.held[unknown as usize]);
+            (0..D).filter(move |&component| held[component]).map(move |component| D as i32 * global + component as i32)
         };
         self.numbering.unknowns.iter().flat_map(rows).collect()
     }
 }
 
-/// Stress at the corners of a cell (those of a triangle first), Pa. `answers`: the shear and the bulk modulus, Pa, each
-/// with the displacements that it answers to, of which the cell's are at `places`, node by node.
-fn corner_stress(solid: &Solid, cell: usize, places: &Cell, answers: [(f64, &[f64]); 2]) -> [Vector4<f64>; 4] {
-    let mesh = &solid.mesh;
-    let entry = |values: &[f64], row: usize| values[2 * places.corners()[row / 2] as usize + row % 2];
-    match mesh.cells[cell] {
-        Cell::Triangle(corners) => {
-            let [u, v] = answers.map(|(_, values)| SVector::from_fn(|row, _| entry(values, row)));
-            let [shear, bulk] = [(answers[0].0, &u), (answers[1].0, &v)]
-                .map(|(modulus, displacement)| Answer { modulus, displacement });
-            [tri3::stress(&mesh.points(corners), shear, bulk); 4]
-        }
-        Cell::Quadrilateral(corners) => {
-            let [u, v] = answers.map(|(_, values)| SVector::from_fn(|row, _| entry(values, row)));
-            let [shear, bulk] = [(answers[0].0, &u), (answers[1].0, &v)]
-                .map(|(modulus, displacement)| Answer { modulus, displacement });
-            match solid.quadrilateral {
-                Quadrilateral::Plain => quad4::corner_stress(&mesh.points(corners), shear, bulk),
-                Quadrilateral::MeanDilatation => bbar::corner_stress(&mesh.points(corners), shear, bulk),
-            }
-        }
+/// The global rows of nodes, component by component.
+pub fn rows_of<const D: usize>(nodes: impl Iterator<Item = i32>) -> Vec<i32> {
+    nodes.flat_map(|node| (0..D as i32).map(move |component| D as i32 * node + component)).collect()
+}
+
+/// x, y, z of a vector in D dimensions; the plane is that of x and z.
+fn in_space<const D: usize>(vector: &[f64]) -> [f64; 3] {
+    match D {
+        2 => [vector[0], 0.0, vector[1]],
+        _ => [vector[0], vector[1], vector[2]],
     }
 }
 
-impl Recovery {
-    fn new(mesh: &Mesh, numbering: &Numbering, layout: &Vector) -> Result<Self> {
+/// Stress at the corners of a cell, Pa. `answers`: the shear and the bulk modulus, Pa, each with the displacements that it answers
+/// to, of which the cell's are at `places`, node by node.
+fn corner_stress<const D: usize>(
+    cells: &Cells<D>,
+    cell: usize,
+    places: &Cell<D>,
+    answers: [(f64, &[f64]); 2],
+) -> Vec<Stress> {
+    let of = |values: &[f64]| -> Vec<SVector<f64, D>> {
+        places.corners().iter().map(|&place| SVector::from_column_slice(&values[D * place as usize..][..D])).collect()
+    };
+    let [u, v] = answers.map(|(_, values)| of(values));
+    let [shear, bulk] =
+        [(answers[0].0, &u), (answers[1].0, &v)].map(|(modulus, displacement)| Answer { modulus, displacement });
+    cells.placed(cell, |placed| placed.corner_stress(shear, bulk))
+}
+
+impl<const D: usize> Recovery<D> {
+    fn new(mesh: &Mesh<D>, numbering: &Numbering, layout: &Vector) -> Result<Self> {
         let touches = |cell: &usize| mesh.cell_unknowns(*cell).corners().iter().any(|&u| numbering.local(u).is_some());
         let cells: Vec<usize> = (0..mesh.cells.len()).filter(touches).collect();
-        let mut unknowns: Vec<u32> = cells.iter().flat_map(|&cell| mesh.cell_unknowns(cell).four()).collect();
+        let mut unknowns: Vec<u32> =
+            cells.iter().flat_map(|&cell| mesh.cell_unknowns(cell).corners().to_vec()).collect();
         unknowns.sort_unstable();
         unknowns.dedup();
         let mut place = vec![0; mesh.unknown_nodes()];
@@ -275,11 +297,7 @@ impl Recovery {
             place[unknown as usize] = i as u32;
         }
         let places = cells.iter().map(|&cell| mesh.cell_unknowns(cell).map(|u| place[u as usize])).collect();
-        let indices: Vec<i32> = unknowns
-            .iter()
-            .map(|&unknown| numbering.global[unknown as usize])
-            .flat_map(|node| [2 * node, 2 * node + 1])
-            .collect();
+        let indices = rows_of::<D>(unknowns.iter().map(|&unknown| numbering.global[unknown as usize]));
         Ok(Self { cells, places, gathered: indices.len(), gather: Gather::new(layout, &indices)? })
     }
 }

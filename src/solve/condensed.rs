@@ -8,7 +8,7 @@ mod linear;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
-use nalgebra::Vector2;
+use nalgebra::SVector;
 
 use super::accepted::AcceptedFace;
 use super::response::Response;
@@ -31,9 +31,9 @@ pub const LARGE_PERIODIC_FACE: usize = 200;
 const PATIENCE: usize = 20;
 
 /// The contact problem on the face alone.
-pub struct Condensed<R> {
+pub struct Condensed<const D: usize, R> {
     comm: SimpleCommunicator,
-    face: AcceptedFace,
+    face: AcceptedFace<D>,
     response: R,
     tolerance: f64,
     /// Brings vectors of the face's nodes to all ranks.
@@ -42,13 +42,13 @@ pub struct Condensed<R> {
     free: Vector,
     displacement: Vector,
     /// The accepted tractions, and those a step before, Pa; on rank 0.
-    accepted: Vec<Vector2<f64>>,
-    before: Vec<Vector2<f64>>,
+    accepted: Vec<SVector<f64, D>>,
+    before: Vec<SVector<f64, D>>,
     /// How large the accepted tractions are, in the norm of the convergence test.
     scale: f64,
     /// The step that is being solved; none before its first residual.
-    stage: Option<Stage>,
-    linear: Linear,
+    stage: Option<Stage<D>>,
+    linear: Linear<D>,
     /// Whether a factor may serve for later tangents.
     reuse: bool,
     /// How often bulk fields were asked for.
@@ -59,29 +59,29 @@ pub struct Condensed<R> {
 }
 
 /// The points of the contact in one step.
-struct Stage {
+struct Stage<const D: usize> {
     step: Step,
     placement: Placement,
     /// On rank 0.
-    sites: Vec<Site<2>>,
+    sites: Vec<Site<D>>,
     /// The last state that was tried.
-    trial: Outcome<2>,
+    trial: Outcome<D>,
     /// The norm of G at the first.
     first: Option<f64>,
     /// Newton steps so far.
     newton: usize,
 }
 
-impl<R: Response> Condensed<R> {
-    /// At rest. `layout` has x, z of each face node on rank 0; `tolerance` is relative to the tractions.
+impl<const D: usize, R: Response<D>> Condensed<D, R> {
+    /// At rest. `layout` has the components of each face node on rank 0; `tolerance` is relative to the tractions.
     pub fn new(
         comm: &SimpleCommunicator,
-        interface: Interface,
+        interface: Interface<D>,
         response: R,
         layout: &Vector,
         (tolerance, height): (f64, Option<f64>),
     ) -> Result<Self> {
-        let components = 2 * interface.face().x.len();
+        let components = D * interface.face().count();
         let indices: Vec<i32> = (0..components as i32).collect();
         let points = if layout.local_len() > 0 { interface.points().count() } else { 0 };
         Ok(Self {
@@ -92,8 +92,8 @@ impl<R: Response> Condensed<R> {
             gather: Gather::new(layout, &indices)?,
             free: layout.like()?,
             displacement: layout.like()?,
-            accepted: vec![Vector2::zeros(); points],
-            before: vec![Vector2::zeros(); points],
+            accepted: vec![SVector::zeros(); points],
+            before: vec![SVector::zeros(); points],
             scale: 0.0,
             stage: None,
             linear: Linear::default(),
@@ -128,7 +128,7 @@ impl<R: Response> Condensed<R> {
     }
 
     /// What is behind the face, on the rank that has it.
-    fn behind(&self) -> Option<Behind<'_>> {
+    fn behind(&self) -> Option<Behind<'_, D>> {
         let (interface, secant) = (&self.face.interface, self.response.secant());
         self.response.compliance().map(|compliance| Behind { interface, compliance, secant })
     }
@@ -144,7 +144,7 @@ impl<R: Response> Condensed<R> {
         let Some(last) = self.face.goes_on_from(step)? else { return Ok(()) };
         let points = self.face.interface.points();
         let way = self.face.placement(step)?.sliding_rate * step.dt;
-        let predicted: Vec<Vector2<f64>> = match points.carried(&self.accepted, way) {
+        let predicted: Vec<SVector<f64, D>> = match points.carried(&self.accepted, way) {
             Some(carried) => carried,
             None => {
                 let share = step.dt / last;
@@ -171,7 +171,7 @@ impl<R: Response> Condensed<R> {
         Ok(())
     }
 
-    fn laws(&self, stage: &Stage) -> Laws<'_> {
+    fn laws(&self, stage: &Stage<D>) -> Laws<'_> {
         let (dt, load) = (stage.step.dt, stage.placement.force);
         Laws {
             penalty: self.face.interface.penalty(),
@@ -183,7 +183,7 @@ impl<R: Response> Condensed<R> {
     }
 
     /// The displacements of the nodes under tractions, m, and the forces, N/m; on rank 0.
-    fn displaced(&self, tractions: &[Vector2<f64>]) -> Result<(Vec<f64>, Vec<f64>)> {
+    fn displaced(&self, tractions: &[SVector<f64, D>]) -> Result<(Vec<f64>, Vec<f64>)> {
         match self.behind() {
             Some(behind) => behind.displaced(tractions, &self.free.view()?),
             None => Ok((Vec::new(), Vec::new())),
@@ -191,22 +191,22 @@ impl<R: Response> Condensed<R> {
     }
 
     /// The laws at the tractions of a vector.
-    fn outcome(&self, u: &Vector) -> Result<Outcome<2>> {
+    fn outcome(&self, u: &Vector) -> Result<Outcome<D>> {
         let Some((behind, stage)) = self.behind().zip(self.stage.as_ref()) else {
             return Ok(Outcome::none());
         };
-        let (tractions, descent) = (tractions(u)?, self.descent(u)?);
+        let (tractions, descent) = (tractions::<D>(u)?, self.descent(u)?);
         if tractions == stage.trial.tractions && descent == stage.trial.descent {
             return Ok(stage.trial.clone());
         }
-        let rise = traction::up::<2>() * descent;
+        let rise = traction::up::<D>() * descent;
         let motions =
             behind.at_points(&self.displaced(&tractions)?.0).into_iter().map(|motion| motion + rise).collect();
         Ok(Outcome::new(&stage.sites, tractions, (motions, descent), self.laws(stage)))
     }
 
     /// Where the indenter is at the end of a step, on every rank. Collective.
-    fn placed(&self, stage: &Stage, descent: f64) -> Result<Placement> {
+    fn placed(&self, stage: &Stage<D>, descent: f64) -> Result<Placement> {
         let (Some(force), Some(height)) = (stage.placement.force, self.height) else { return Ok(stage.placement) };
         let mut approach = stage.placement.approach + descent;
         self.comm.process_at_rank(0).broadcast_into(&mut approach);
@@ -222,29 +222,29 @@ impl<R: Response> Condensed<R> {
     }
 
     /// Gives every rank the states and displacements of rank 0. Collective.
-    fn share(&self, states: Vec<State<2>>, mut displacement: Vec<f64>) -> (Vec<State<2>>, Vec<f64>) {
+    fn share(&self, states: Vec<State<D>>, mut displacement: Vec<f64>) -> (Vec<State<D>>, Vec<f64>) {
         if self.comm.size() == 1 {
             return (states, displacement);
         }
         let mut list = Vec::new();
         states.iter().for_each(|state| state.write(&mut list));
-        list.resize(State::<2>::NUMBERS * self.face.interface.points().count(), 0.0);
+        list.resize(State::<D>::NUMBERS * self.face.interface.points().count(), 0.0);
         displacement.resize(self.face.displacement().len(), 0.0);
         self.comm.process_at_rank(0).broadcast_into(&mut list[..]);
         self.comm.process_at_rank(0).broadcast_into(&mut displacement[..]);
-        (list.chunks_exact(State::<2>::NUMBERS).map(State::read).collect(), displacement)
+        (list.chunks_exact(State::<D>::NUMBERS).map(State::read).collect(), displacement)
     }
 
     /// Tractions near those that meet the laws, from others.
-    fn start(&self, from: Outcome<2>) -> Result<Outcome<2>> {
+    fn start(&self, from: Outcome<D>) -> Result<Outcome<D>> {
         let Some((behind, stage)) = self.behind().zip(self.stage.as_ref()) else { return Ok(from) };
-        let operator: traction::Operator<'_, 2> = (&|j, rows| behind.influence(j, rows), &|t| behind.moves(t));
+        let operator: traction::Operator<'_, D> = (&|j, rows| behind.influence(j, rows), &|t| behind.moves(t));
         traction::start(&stage.sites, from, self.laws(stage), operator, self.tolerance)
     }
 
     /// Takes note of a state that was tried, and writes its residual.
-    fn tried(&mut self, outcome: Outcome<2>, f: &mut Vector) -> Result<()> {
-        write(f, outcome.answers.iter().map(|answer: &Answer<2>| answer.excess))?;
+    fn tried(&mut self, outcome: Outcome<D>, f: &mut Vector) -> Result<()> {
+        write(f, outcome.answers.iter().map(|answer: &Answer<D>| answer.excess))?;
         self.face.interface.count_laws(outcome.in_contact());
         // The force that is too much, over the area; where the place is given, the descent, which is then none.
         let stage = self.stage.as_ref().ok_or_else(unprepared)?;
@@ -261,7 +261,7 @@ impl<R: Response> Condensed<R> {
     }
 }
 
-impl<R: Response> TransientProblem for Condensed<R> {
+impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
     fn begin(&mut self, phase: Phase) -> Result<()> {
         self.stage = None;
         self.face.begin(phase)
@@ -310,8 +310,8 @@ impl<R: Response> TransientProblem for Condensed<R> {
             Some(_) if astray => self.start(stage.trial.clone())?,
             Some(behind) => {
                 let lowered = self.descent(decrement)?;
-                let decrement = tractions(decrement)?;
-                let rise = traction::up::<2>() * lowered;
+                let decrement = tractions::<D>(decrement)?;
+                let rise = traction::up::<D>() * lowered;
                 let moved: Vec<_> = behind.moves(&decrement)?.into_iter().map(|moved| moved + rise).collect();
                 let along = (&decrement[..], &moved[..], lowered);
                 // On the way down to a touch nothing says how far.
@@ -352,7 +352,7 @@ impl<R: Response> TransientProblem for Condensed<R> {
     }
 
     fn departure(&mut self, step: Step, u: &Vector) -> Result<f64> {
-        let mut ends = self.displaced(&tractions(u)?)?.0;
+        let mut ends = self.displaced(&tractions::<D>(u)?)?.0;
         ends.resize(self.face.displacement().len(), 0.0);
         self.comm.process_at_rank(0).broadcast_into(&mut ends[..]);
         Ok(self.face.departure(step, &ends))
@@ -366,7 +366,7 @@ impl<R: Response> TransientProblem for Condensed<R> {
         let met = outcome.met(&stage.sites);
         let laws = self.laws(&stage);
         let ends = stage.sites.iter().zip(&outcome.answers).zip(&outcome.motions).zip(self.face.interface.states());
-        let states: Vec<State<2>> =
+        let states: Vec<State<D>> =
             ends.map(|(((site, answer), motion), before)| answer.state(site, motion, laws, before)).collect();
         let placement = self.placed(&stage, outcome.descent)?;
         let (displacement, forces) = self.displaced(&met)?;
@@ -415,15 +415,14 @@ impl<R: Response> TransientProblem for Condensed<R> {
 }
 
 /// The tractions in a vector of the unknowns, on this rank.
-fn tractions(u: &Vector) -> Result<Vec<Vector2<f64>>> {
-    Ok(u.view()?.as_chunks().0.iter().map(|&[x, z]| Vector2::new(x, z)).collect())
+fn tractions<const D: usize>(u: &Vector) -> Result<Vec<SVector<f64, D>>> {
+    Ok(u.view()?.chunks_exact(D).map(SVector::from_column_slice).collect())
 }
 
 /// Writes them.
-fn write(u: &mut Vector, tractions: impl Iterator<Item = Vector2<f64>>) -> Result<()> {
-    for (place, value) in u.view_mut()?.as_chunks_mut().0.iter_mut().zip(tractions) {
-        let [x, z] = place;
-        (*x, *z) = (value.x, value.y);
+fn write<const D: usize>(u: &mut Vector, tractions: impl Iterator<Item = SVector<f64, D>>) -> Result<()> {
+    for (place, value) in u.view_mut()?.chunks_exact_mut(D).zip(tractions) {
+        place.copy_from_slice(value.as_slice());
     }
     Ok(())
 }

@@ -1,44 +1,44 @@
 //! The contact face of a problem whose unknowns are all displacements, distributed: its trial state.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{SMatrix, SVector};
 
 use super::accepted::AcceptedFace;
 use crate::error::Result;
-use crate::interface::{Interface, Residual, Surface, Tangent};
+use crate::interface::{Interface, Residual, Tangent, Trial};
 use crate::loading::Placement;
 use crate::petsc::{Gather, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 
 /// The contact face, known whole on every rank.
-pub struct ContactFace {
+pub struct ContactFace<const D: usize> {
     /// At the accepted state.
-    pub accepted: AcceptedFace,
+    pub accepted: AcceptedFace<D>,
     gather: Gather,
     /// The first local row of each face node in a solution vector, where this rank owns it.
     rows: Vec<Option<usize>>,
     /// 0 for the held components of each face node, 1 for the free ones.
-    free: Vec<Vector2<f64>>,
-    trial: Surface,
+    free: Vec<SVector<f64, D>>,
+    trial: Trial,
     placement: Placement,
     /// Contact forces at the trial state, internal minus external, N/m; zero where a component is held.
-    pub residual: Residual,
+    pub residual: Residual<D>,
     /// Their derivatives at the trial state; zero where a component is held.
-    pub tangent: Tangent,
+    pub tangent: Tangent<D>,
     /// How large the contact forces are at the accepted state, in the norm of the convergence test.
     scale: f64,
     first_norm: f64,
 }
 
-impl ContactFace {
-    /// At rest. `gather` brings x, z of each face node out of a solution vector, where they are in the local `rows`; `held`
+impl<const D: usize> ContactFace<D> {
+    /// At rest. `gather` brings the components of each face node out of a solution vector, where they are in the local `rows`; `held`
     /// says which of them are held.
-    pub fn new(interface: Interface, gather: Gather, rows: Vec<Option<usize>>, held: &[[bool; 2]]) -> Self {
+    pub fn new(interface: Interface<D>, gather: Gather, rows: Vec<Option<usize>>, held: &[[bool; D]]) -> Self {
         Self {
             accepted: AcceptedFace::new(interface),
             gather,
             rows,
-            free: held.iter().map(|[x, z]| Vector2::new(f64::from(!x), f64::from(!z))).collect(),
-            trial: Surface::at_rest(held.len()),
+            free: held.iter().map(|held| SVector::from(held.map(|held| f64::from(!held)))).collect(),
+            trial: Trial::at_rest(D * held.len()),
             placement: Placement::default(),
             residual: Residual::new(),
             tangent: Tangent::default(),
@@ -48,7 +48,7 @@ impl ContactFace {
     }
 
     /// The laws on the face.
-    pub fn interface(&self) -> &Interface {
+    pub fn interface(&self) -> &Interface<D> {
         &self.accepted.interface
     }
 
@@ -67,27 +67,24 @@ impl ContactFace {
         self.try_state(step, u)?;
         let Self { accepted: AcceptedFace { interface, .. }, trial, placement, tangent, free, .. } = self;
         interface.tangent(*placement, trial, tangent)?;
-        let mask = |row: usize, column: usize, block: &mut Matrix2<f64>| {
+        let mask = |row: usize, column: usize, block: &mut SMatrix<f64, D, D>| {
             block.component_mul_assign(&(free[row] * free[column].transpose()));
         };
         for (node, block) in tangent.diagonal.iter_mut().enumerate() {
             mask(node, node, block);
         }
-        for (edge, coupling) in interface.face().edges.iter().zip(&mut tangent.coupling) {
-            for ((row, column), block) in edge.directions().into_iter().zip(coupling) {
-                mask(row, column, block);
-            }
+        for (&(row, column), block) in interface.pairs().iter().zip(&mut tangent.coupling) {
+            mask(row, column, block);
         }
         Ok(())
     }
 
-    /// Adds to x, z of nodes of the face in a vector like the solution.
-    pub fn add(&self, increments: impl Iterator<Item = (usize, Vector2<f64>)>, to: &mut Vector) -> Result<()> {
+    /// Adds to nodes of the face in a vector like the solution.
+    pub fn add(&self, increments: impl Iterator<Item = (usize, SVector<f64, D>)>, to: &mut Vector) -> Result<()> {
         let mut values = to.view_mut()?;
         for (node, increment) in increments {
             if let Some(row) = self.rows[node] {
-                values[row] += increment.x;
-                values[row + 1] += increment.y;
+                values[row..].iter_mut().zip(&increment).for_each(|(value, more)| *value += more);
             }
         }
         Ok(())
@@ -138,7 +135,7 @@ impl ContactFace {
         self.accepted.restore(snapshot)
     }
 
-    /// x, z of each face node of a solution vector, on every rank.
+    /// The components of each face node of a solution vector, on every rank.
     pub fn gather(&mut self, vector: &Vector) -> Result<Vec<f64>> {
         self.gather.all(vector)
     }
@@ -149,10 +146,8 @@ impl ContactFace {
         self.trial.beginning.copy_from_slice(self.accepted.displacement());
         self.gather.gather(u, &mut self.trial.end)?;
         // What is held stays, whatever round-off the linear solver leaves there.
-        for (end, free) in self.trial.end.as_chunks_mut().0.iter_mut().zip(&self.free) {
-            let [x, z] = end;
-            (*x, *z) = (*x * free.x, *z * free.y);
-        }
+        let free = self.free.iter().flat_map(|free| free.iter());
+        self.trial.end.iter_mut().zip(free).for_each(|(end, free)| *end *= free);
         Ok(())
     }
 
@@ -165,7 +160,7 @@ impl ContactFace {
             return Ok(placement);
         }
         let farthest = self.accepted.displacement().iter().fold(placement.approach.abs(), |most, u| most.max(u.abs()));
-        let resolution = LAST_DIGITS * (farthest / step.dt + placement.sliding_rate.abs());
+        let resolution = LAST_DIGITS * (farthest / step.dt + placement.sliding_rate.norm());
         Ok(Placement { resolution, ..placement })
     }
 }

@@ -14,7 +14,7 @@ mod woodbury;
 
 use crate::energy::Energy;
 use crate::error::{Error, Result};
-use crate::interface::{Fields, Interface, Totals};
+use crate::interface::{Face, Fields, Totals};
 use crate::loading::{Phase, Placement};
 use crate::petsc::{Matrix, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
@@ -97,8 +97,8 @@ pub struct Work {
 
 /// The contact face at an accepted state, whole on every rank.
 pub struct Contact<'a> {
-    interface: &'a mut Interface,
-    /// Of each node, x, z, m.
+    face: &'a mut dyn Face,
+    /// Of each node, x, z or x, y, z, m.
     pub displacement: &'a [f64],
     /// The length of the last step, s.
     dt: f64,
@@ -107,17 +107,17 @@ pub struct Contact<'a> {
 impl Contact<'_> {
     /// Where the indenter is.
     pub fn placement(&self) -> Placement {
-        self.interface.placement()
+        self.face.placement()
     }
 
     /// The integrals over the face.
     pub fn totals(&mut self) -> Result<Totals> {
-        self.interface.totals()
+        self.face.totals()
     }
 
     /// The fields at the face's nodes.
     pub fn fields(&self) -> Fields {
-        self.interface.fields(self.dt)
+        self.face.fields(self.dt)
     }
 }
 
@@ -126,10 +126,10 @@ impl Contact<'_> {
 pub struct BulkFields {
     /// Mesh nodes that this rank supplies.
     pub nodes: Vec<usize>,
-    /// Displacement x, z, m.
-    pub displacement: Vec<[f64; 2]>,
-    /// Stress xx, zz, yy, xz, Pa, tension positive.
-    pub stress: Vec<[f64; 4]>,
+    /// Displacement x, y, z, m; none across the plane.
+    pub displacement: Vec<[f64; 3]>,
+    /// Stress xx, yy, zz, xy, yz, xz, Pa, tension positive.
+    pub stress: Vec<[f64; 6]>,
 }
 
 /// Who is told of each accepted step.

@@ -1,8 +1,8 @@
 //! All unknowns at once: the reference strategy, which works for everything.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{SMatrix, SVector};
 
-use super::body::Body;
+use super::body::{Body, rows_of};
 use super::condensed::LARGE_FACE;
 use super::face::ContactFace;
 use super::traction::{self, Behind, Laws, Outcome};
@@ -17,14 +17,14 @@ use crate::petsc::{Gather, Matrix, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 
 /// Bulk and interface in one sparse system: the residual is the force on every node.
-pub struct Monolithic {
+pub struct Monolithic<const D: usize> {
     bulk: Bulk,
-    body: Body,
-    face: ContactFace,
+    body: Body<D>,
+    face: ContactFace<D>,
     /// Per face node: its global node number, and its first local row where this rank owns it.
     rows: Vec<(i32, Option<usize>)>,
-    base: Base,
-    inverse: Woodbury,
+    base: Base<D>,
+    inverse: Woodbury<D>,
     round_off: RoundOff,
     /// Whether stiff laws are met by the guess, for which `inverse` factorises the bulk.
     starts: bool,
@@ -49,25 +49,27 @@ struct RoundOff {
 }
 
 /// The bulk tangent's blocks under the interface's own, at one step length: what the interface's are added to.
-struct Base {
+struct Base<const D: usize> {
     /// Not a number before the first tangent.
     dt: f64,
-    diagonal: Vec<Matrix2<f64>>,
-    coupling: Vec<[Matrix2<f64>; 2]>,
+    diagonal: Vec<SMatrix<f64, D, D>>,
+    /// Per pair of [`Interface::pairs`].
+    coupling: Vec<SMatrix<f64, D, D>>,
 }
 
-impl Monolithic {
+impl<const D: usize> Monolithic<D> {
     /// At rest. `tolerance` is relative to the contact forces, on the residual norm.
-    pub fn new(bulk: Bulk, body: Body, interface: Interface, layout: &Vector, tolerance: f64) -> Result<Self> {
+    pub fn new(bulk: Bulk, body: Body<D>, interface: Interface<D>, layout: &Vector, tolerance: f64) -> Result<Self> {
         let (mesh, numbering) = (body.mesh(), body.numbering());
         let unknowns = &interface.face().unknown;
-        let row = |&unknown: &u32| (numbering.global[unknown as usize], numbering.local(unknown).map(|node| 2 * node));
+        let row = |&unknown: &u32| (numbering.global[unknown as usize], numbering.local(unknown).map(|node| D * node));
         let rows: Vec<_> = unknowns.iter().map(row).collect();
         let held: Vec<_> = unknowns.iter().map(|&unknown| mesh.held[unknown as usize]).collect();
-        let indices: Vec<i32> = rows.iter().flat_map(|&(node, _)| [2 * node, 2 * node + 1]).collect();
+        let indices = rows_of::<D>(rows.iter().map(|&(node, _)| node));
         let gather = Gather::new(layout, &indices)?;
-        let components =
-            rows.iter().flat_map(|&(node, local)| [0, 1].map(|i| (2 * node + i as i32, local.map(|row| row + i))));
+        let components = rows
+            .iter()
+            .flat_map(|&(node, local)| (0..D).map(move |i| (D as i32 * node + i as i32, local.map(|row| row + i))));
         let inverse = Woodbury::new(body.comm(), components.collect(), held.as_flattened().to_vec(), layout)?;
         Ok(Self {
             face: ContactFace::new(interface, gather, rows.iter().map(|&(_, local)| local).collect(), &held),
@@ -97,7 +99,7 @@ impl Monolithic {
         const PENALTY: f64 = 1e2;
         const TURNS: f64 = 5.0;
         let placement = self.face.placement(step)?;
-        let way = placement.sliding_rate.abs().max(placement.approach_rate.abs()) * step.dt;
+        let way = placement.sliding_rate.norm().max(placement.approach_rate.abs()) * step.dt;
         if self.face.interface().friction().is_some_and(|law| way > TURNS * law.sharpness(step.dt)) {
             return Ok(true);
         }
@@ -113,7 +115,7 @@ impl Monolithic {
         let (mut load, mut change, mut accepted) = (u.like()?, u.like()?, u.like()?);
         accepted.copy_from(u)?;
         self.bulk.force(step, u, &change, &mut load)?;
-        self.inverse.compliance(&self.bulk, step.dt)?;
+        self.inverse.compliance(&self.bulk, step.dt, self.face.interface().face())?;
         self.inverse.solve_bulk(&load, &mut change)?;
         u.add(-1.0, &change)?;
         let free = self.face.gather(u)?;
@@ -139,21 +141,23 @@ impl Monolithic {
         let placement = self.face.placement(step)?;
         self.face.accepted.interface.place(placement)?;
         let interface = self.face.interface();
-        let Some((compliance, secant)) = self.inverse.compliance(&self.bulk, step.dt)? else { return Ok(None) };
+        let Some((compliance, secant)) = self.inverse.compliance(&self.bulk, step.dt, interface.face())? else {
+            return Ok(None);
+        };
         let behind = Behind { interface, compliance, secant };
         let sites = behind.sites(&self.face.accepted, placement, &free);
         let resolution = placement.resolution * step.dt;
         let laws =
             Laws { penalty: interface.penalty(), friction: interface.friction(), dt: step.dt, resolution, load: None };
         let normals = interface.points().all().iter().map(|point| point.normal);
-        let tractions: Vec<Vector2<f64>> =
+        let tractions: Vec<SVector<f64, D>> =
             interface.states().iter().zip(normals).map(|(state, normal)| state.on_layer(&normal)).collect();
         let at_rest = behind.at_points(&free);
-        let moved = |t: &[Vector2<f64>]| -> Result<Vec<Vector2<f64>>> {
+        let moved = |t: &[SVector<f64, D>]| -> Result<Vec<SVector<f64, D>>> {
             Ok(behind.moves(t)?.iter().zip(&at_rest).map(|(moved, free)| moved + free).collect())
         };
         let first = Outcome::new(&sites, tractions.clone(), (moved(&tractions)?, 0.0), laws);
-        let operator: traction::Operator<'_, 2> = (&|j, rows| behind.influence(j, rows), &|t| behind.moves(t));
+        let operator: traction::Operator<'_, D> = (&|j, rows| behind.influence(j, rows), &|t| behind.moves(t));
         // To the last digits: what displacements make of the tractions is more than they are off.
         let outcome = traction::start(&sites, first, laws, operator, f64::EPSILON)?;
         let (mut displacements, forces) = behind.displaced(&outcome.met(&sites), &free)?;
@@ -161,19 +165,19 @@ impl Monolithic {
             for (i, (site, answer)) in sites.iter().zip(&outcome.answers).enumerate().filter(|(_, (_, a))| a.active) {
                 if let [(node, _)] = interface.points().shares(i) {
                     let motion = answer.motion(site, penalty);
-                    displacements[2 * node..][..2].copy_from_slice(motion.as_slice());
+                    displacements[D * node..][..D].copy_from_slice(motion.as_slice());
                 }
             }
         }
         Ok(Some((forces, displacements)))
     }
 
-    /// Sets x, z of the face's nodes in a vector of the body.
+    /// Sets the face's nodes in a vector of the body.
     fn on_face(&self, from: &[f64], to: &mut Vector) -> Result<()> {
         let mut values = to.view_mut()?;
-        for ([x, z], &(_, local)) in from.as_chunks().0.iter().zip(&self.rows) {
+        for (node, &(_, local)) in from.chunks_exact(D).zip(&self.rows) {
             if let Some(row) = local {
-                (values[row], values[row + 1]) = (*x, *z);
+                values[row..][..D].copy_from_slice(node);
             }
         }
         Ok(())
@@ -203,7 +207,7 @@ impl RoundOff {
     }
 }
 
-impl TransientProblem for Monolithic {
+impl<const D: usize> TransientProblem for Monolithic<D> {
     fn begin(&mut self, phase: Phase) -> Result<()> {
         self.face.accepted.begin(phase)
     }
@@ -227,12 +231,10 @@ impl TransientProblem for Monolithic {
                 tangent.insert_block(global, global, &(base + block))?;
             }
         }
-        let edges = face.interface().face().edges.iter().zip(&base.coupling);
-        for ((edge, base), coupling) in edges.zip(&face.tangent.coupling) {
-            for ((row, column), side) in edge.directions().into_iter().zip(0..) {
-                if let (global, Some(_)) = rows[row] {
-                    tangent.insert_block(global, rows[column].0, &(base[side] + coupling[side]))?;
-                }
+        let pairs = face.interface().pairs().iter().zip(&base.coupling);
+        for ((&(row, column), base), coupling) in pairs.zip(&face.tangent.coupling) {
+            if let (global, Some(_)) = rows[row] {
+                tangent.insert_block(global, rows[column].0, &(base + coupling))?;
             }
         }
         self.inverse.renew();
@@ -246,14 +248,14 @@ impl TransientProblem for Monolithic {
 
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
         self.started = false;
-        let small = 2 * self.rows.len() <= LARGE_FACE;
+        let small = D * self.rows.len() <= LARGE_FACE;
         if self.starts && small && self.is_stiff(step)? {
             return self.start(step, u);
         }
         // The face goes on as it did; what is behind it need not be predicted, because it is linear.
         if self.face.accepted.goes_on_from(step)?.is_some() {
-            let rates = self.face.accepted.rate().as_chunks().0.iter();
-            let increments = rates.map(|&[x, z]| Vector2::new(x, z) * step.dt).enumerate();
+            let rates = self.face.accepted.rate().chunks_exact(D);
+            let increments = rates.map(|rate| SVector::from_column_slice(rate) * step.dt).enumerate();
             self.face.add(increments, u)?;
         }
         Ok(())
@@ -319,22 +321,21 @@ impl TransientProblem for Monolithic {
     }
 }
 
-impl Base {
+impl<const D: usize> Base<D> {
     /// Reads the blocks out of a bulk tangent that was just made for `dt`.
-    fn read(&mut self, dt: f64, rows: &[(i32, Option<usize>)], interface: &Interface, tangent: &Matrix) -> Result<()> {
+    fn read(
+        &mut self,
+        dt: f64,
+        rows: &[(i32, Option<usize>)],
+        interface: &Interface<D>,
+        tangent: &Matrix,
+    ) -> Result<()> {
         let block = |row: usize, column: usize| match rows[row] {
             (global, Some(_)) => tangent.block(global, rows[column].0),
-            _ => Ok(Matrix2::zeros()),
+            _ => Ok(SMatrix::zeros()),
         };
         self.diagonal = (0..rows.len()).map(|node| block(node, node)).collect::<Result<_>>()?;
-        let edges = &interface.face().edges;
-        self.coupling = edges
-            .iter()
-            .map(|edge| {
-                let [(a, b), (c, d)] = edge.directions();
-                Ok([block(a, b)?, block(c, d)?])
-            })
-            .collect::<Result<_>>()?;
+        self.coupling = interface.pairs().iter().map(|&(row, column)| block(row, column)).collect::<Result<_>>()?;
         self.dt = dt;
         Ok(())
     }

@@ -6,12 +6,11 @@
 //! (c 1 + (C T)_BB) x_B = b_B,     x = (b - C T_B x_B) / c
 //! ```
 
-use nalgebra::Matrix2;
+use nalgebra::SMatrix;
 
 use super::response::Compliance;
 use crate::error::Result;
 use crate::interface::Tangent;
-use crate::mesh::Edge;
 use crate::petsc::DenseLu;
 
 /// The columns of T that are not zero: for each, (row, value) in components of the face.
@@ -30,22 +29,18 @@ pub struct Factor {
 
 impl SparseColumns {
     /// The columns with an entry above `negligible`, N/m per m.
-    pub fn new(tangent: &Tangent, edges: &[Edge], negligible: f64) -> Self {
-        let mut all: Vec<Vec<(usize, f64)>> = vec![Vec::new(); 2 * tangent.diagonal.len()];
-        let mut add = |row: usize, column: usize, block: &Matrix2<f64>| {
-            for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                if block[(i, j)] != 0.0 {
-                    all[2 * column + j].push((2 * row + i, block[(i, j)]));
-                }
+    pub fn new<const D: usize>(tangent: &Tangent<D>, pairs: &[(usize, usize)], negligible: f64) -> Self {
+        let mut all: Vec<Vec<(usize, f64)>> = vec![Vec::new(); D * tangent.diagonal.len()];
+        let mut add = |row: usize, column: usize, block: &SMatrix<f64, D, D>| {
+            for (i, j) in (0..D).flat_map(|j| (0..D).map(move |i| (i, j))).filter(|place| block[*place] != 0.0) {
+                all[D * column + j].push((D * row + i, block[(i, j)]));
             }
         };
         for (node, block) in tangent.diagonal.iter().enumerate() {
             add(node, node, block);
         }
-        for (edge, coupling) in edges.iter().zip(&tangent.coupling) {
-            for ((row, column), block) in edge.directions().into_iter().zip(coupling) {
-                add(row, column, block);
-            }
+        for (&(row, column), block) in pairs.iter().zip(&tangent.coupling) {
+            add(row, column, block);
         }
         let matters = |(_, entries): &(usize, Vec<(usize, f64)>)| entries.iter().any(|(_, t)| t.abs() > negligible);
         let (places, entries) = all.into_iter().enumerate().filter(matters).unzip();
@@ -68,7 +63,7 @@ impl SparseColumns {
 
 impl Factor {
     /// Factorises for the given columns and c.
-    pub fn new(compliance: &Compliance, columns: SparseColumns, secant: f64) -> Result<Self> {
+    pub fn new<const D: usize>(compliance: &Compliance<D>, columns: SparseColumns, secant: f64) -> Result<Self> {
         let order = columns.places.len();
         let mut matrix = vec![0.0; order * order];
         for (j, entries) in columns.entries.iter().enumerate() {
@@ -87,7 +82,7 @@ impl Factor {
     }
 
     /// x = (b - C T_B x_B) / c
-    pub fn solve(&self, compliance: &Compliance, b: &[f64], x: &mut [f64]) -> Result<()> {
+    pub fn solve<const D: usize>(&self, compliance: &Compliance<D>, b: &[f64], x: &mut [f64]) -> Result<()> {
         let places = &self.columns.places;
         let right: Vec<f64> = places.iter().map(|&place| b[place]).collect();
         let mut active = vec![0.0; places.len()];

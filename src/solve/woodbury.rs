@@ -22,13 +22,14 @@ use super::on_face::{Factor, SparseColumns};
 use super::response::Compliance;
 use crate::bulk::Bulk;
 use crate::error::{Error, Result};
+use crate::mesh::Face;
 use crate::petsc::{Cholesky, Matrix, Vector};
 
 /// Columns of C that are had together, which takes a fraction of the time of as many single solves.
 const BLOCK: usize = 32;
 
 /// J^-1.
-pub struct Woodbury {
+pub struct Woodbury<const D: usize> {
     comm: SimpleCommunicator,
     /// Per component of the face, its global row, and its local one where this rank owns it.
     rows: Vec<(i32, Option<usize>)>,
@@ -36,7 +37,7 @@ pub struct Woodbury {
     ascending: Vec<usize>,
     /// Which of them are held: their columns of C are none.
     held: Vec<bool>,
-    base: Option<Base>,
+    base: Option<Base<D>>,
     /// The contact at the last tangent; none = not factorised since.
     contact: Option<Factor>,
     work: Vector,
@@ -45,18 +46,18 @@ pub struct Woodbury {
 }
 
 /// A0 and C.
-struct Base {
+struct Base<const D: usize> {
     /// The secant of each part of the bulk over that of the first.
     ratios: Vec<f64>,
     factor: Cholesky,
-    compliance: Compliance,
+    compliance: Compliance<D>,
     /// Which of its columns are known.
     known: Vec<bool>,
     /// l of the last tangent: the secant of the first part.
     scale: f64,
 }
 
-impl Woodbury {
+impl<const D: usize> Woodbury<D> {
     /// Costs nothing until the first solve.
     pub fn new(
         comm: &SimpleCommunicator,
@@ -76,8 +77,8 @@ impl Woodbury {
     }
 
     /// C and l at step length `dt`, all of C. Collective.
-    pub fn compliance(&mut self, bulk: &Bulk, dt: f64) -> Result<Option<(&Compliance, f64)>> {
-        self.factorise(bulk, dt)?;
+    pub fn compliance(&mut self, bulk: &Bulk, dt: f64, face: &Face<D>) -> Result<Option<(&Compliance<D>, f64)>> {
+        self.factorise(bulk, dt, face)?;
         self.complete(|_| true)?;
         Ok(self.base.as_ref().map(|base| (&base.compliance, base.scale)))
     }
@@ -94,12 +95,12 @@ impl Woodbury {
     pub fn solve(
         &mut self,
         (bulk, dt): (&Bulk, f64),
-        face: &mut ContactFace,
+        face: &mut ContactFace<D>,
         b: &Vector,
         x: &mut Vector,
     ) -> Result<()> {
         if self.contact.is_none() {
-            self.factorise(bulk, dt)?;
+            self.factorise(bulk, dt, face.interface().face())?;
             self.update(face)?;
         }
         let (Some(base), Some(contact)) = (&self.base, &self.contact) else {
@@ -123,7 +124,7 @@ impl Woodbury {
     }
 
     /// Makes A0 serve for the step length.
-    fn factorise(&mut self, bulk: &Bulk, dt: f64) -> Result<()> {
+    fn factorise(&mut self, bulk: &Bulk, dt: f64, face: &Face<D>) -> Result<()> {
         let secants = bulk.secants(dt);
         let scale = secants[0];
         let ratios: Vec<f64> = secants.iter().map(|secant| secant / scale).collect();
@@ -140,7 +141,7 @@ impl Woodbury {
         self.base = Some(Base {
             ratios,
             factor: Cholesky::new(&matrix)?,
-            compliance: Compliance::unknown(self.rows.len()),
+            compliance: Compliance::unknown(face),
             known: vec![false; self.rows.len()],
             scale,
         });
@@ -148,8 +149,8 @@ impl Woodbury {
     }
 
     /// Makes `contact` hold for the face's tangent.
-    fn update(&mut self, face: &ContactFace) -> Result<()> {
-        let columns = SparseColumns::new(&face.tangent, &face.interface().face().edges, 0.0);
+    fn update(&mut self, face: &ContactFace<D>) -> Result<()> {
+        let columns = SparseColumns::new(&face.tangent, face.interface().pairs(), 0.0);
         self.complete(|block| columns.rows().any(|row| block.contains(&row)))?;
         let Some(base) = &self.base else { return Ok(()) };
         self.contact = Some(Factor::new(&base.compliance, columns, base.scale)?);

@@ -96,8 +96,8 @@ impl Encounters {
 /// Whether the indenter moves along the face.
 pub fn slides(phase: &Phase) -> bool {
     match phase.motion {
-        Motion::Velocity(velocity) => velocity != 0.0,
-        Motion::Sinusoid { amplitude, .. } => amplitude != 0.0,
+        Motion::Velocity(velocity) => velocity.x != 0.0,
+        Motion::Sinusoid { amplitude, .. } => amplitude.x != 0.0,
     }
 }
 
@@ -114,16 +114,16 @@ fn moments(course: &[Phase]) -> Vec<Moment> {
     let mut all: Vec<Moment> = Vec::new();
     for (index, phase) in course.iter().enumerate() {
         let [before, after] = phase.approach;
-        let [least, most] = phase.sliding_range();
+        let [least, most] = phase.sliding_range(0);
         let mut add = |approach, sliding| {
             all.push(Moment { phase: index, approach, sliding });
         };
-        add(before, phase.sliding);
+        add(before, phase.sliding.x);
         if matches!(phase.motion, Motion::Sinusoid { .. }) {
             add(before.max(after), least);
             add(before.max(after), most);
         }
-        add(after, phase.final_sliding());
+        add(after, phase.final_sliding().x);
     }
     let every = all.len().div_ceil(MOST_MOMENTS);
     let deepest = all.iter().map(|moment| moment.approach).fold(f64::NEG_INFINITY, f64::max);

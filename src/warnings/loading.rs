@@ -29,8 +29,8 @@ fn step(scene: &Scene, index: usize) -> Option<f64> {
 fn speeds(phase: &Phase) -> [f64; 2] {
     let [from, to] = phase.approach;
     let along = match phase.motion {
-        Motion::Velocity(velocity) => velocity,
-        Motion::Sinusoid { amplitude, cycles } => 4.0 * amplitude * cycles / phase.duration,
+        Motion::Velocity(velocity) => velocity.norm(),
+        Motion::Sinusoid { amplitude, cycles, .. } => 4.0 * amplitude.norm() * cycles / phase.duration,
     };
     [(to - from) / phase.duration, along].map(f64::abs)
 }
@@ -66,7 +66,7 @@ pub fn elastic_slip(before: &Before<'_>) -> Option<Warning> {
     // Of a formula nobody knows the coefficient beforehand.
     let coefficient = friction.coefficient().unwrap_or(1.0);
     let range = |phase: &Phase| {
-        let [least, most] = phase.sliding_range();
+        let [least, most] = phase.sliding_range(0);
         most - least
     };
     let slides = before.encounters.moving().map(|(_, phase, _)| range(phase)).filter(|range| *range > 0.0);
@@ -87,9 +87,9 @@ pub fn elastic_slip(before: &Before<'_>) -> Option<Warning> {
 /// Fewer than [`FEWEST_STEPS_TO_A_CYCLE`].
 pub fn cycles(before: &Before<'_>) -> Option<Warning> {
     let found = before.encounters.course.iter().enumerate().find_map(|(index, phase)| {
-        let Motion::Sinusoid { cycles, amplitude } = phase.motion else { return None };
+        let Motion::Sinusoid { cycles, amplitude, .. } = phase.motion else { return None };
         let steps = phase.duration / step(before.scene, index)? / cycles;
-        (amplitude != 0.0 && above(FEWEST_STEPS_TO_A_CYCLE, steps)).then_some((index, steps, cycles))
+        (amplitude.norm() != 0.0 && above(FEWEST_STEPS_TO_A_CYCLE, steps)).then_some((index, steps, cycles))
     });
     let (index, steps, cycles) = found?;
     let text = format!(

@@ -7,7 +7,7 @@ use mpjr::mesh::Mesh;
 
 /// Writes the mesh of a layer of so many cells in format 2.2, its upper face as "top", the lower one as "base", both sides
 /// as "sides", and the regions by `names`.
-pub fn write_msh(mesh: &Mesh, [nx, nz]: [usize; 2], names: &[&str], file: &Path) {
+pub fn write_msh(mesh: &Mesh<2>, [nx, nz]: [usize; 2], names: &[&str], file: &Path) {
     let rows = nz + 1;
     let column = |x: usize| (1..rows).map(move |j| [x * rows + j - 1, x * rows + j]);
     let row = |j: usize| (1..=nx).map(move |i| [(i - 1) * rows + j, i * rows + j]);

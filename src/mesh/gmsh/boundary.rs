@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use nalgebra::Vector2;
 
 use super::{Contents, Element, Flaw, Kind, Outcome, Role};
-use crate::mesh::{Cell, Edge, Face};
+use crate::mesh::{Axis, Cell, Face, Facet, Grid};
 
 /// The edges of all cells: by their two nodes, the lower first, the cells on either side.
 pub(super) struct Edges(HashMap<(u32, u32), Sides>);
@@ -19,11 +19,11 @@ struct Sides {
 
 impl Edges {
     /// Refuses two cells on the same side of an edge; `tags` are the cells' numbers in the file.
-    pub fn new(cells: &[Cell], tags: &[u64]) -> Outcome<Self> {
-        let mut edges: HashMap<(u32, u32), Sides> = HashMap::new();
+    pub fn new(cells: &[Cell<2>], tags: &[u64]) -> Outcome<Self> {
+        let mut known: HashMap<(u32, u32), Sides> = HashMap::new();
         for (i, cell) in cells.iter().enumerate() {
-            for (a, b) in cell.edges() {
-                let sides = edges.entry((a.min(b), a.max(b))).or_default();
+            for (a, b) in edges(cell) {
+                let sides = known.entry((a.min(b), a.max(b))).or_default();
                 let side = if a < b { &mut sides.forth } else { &mut sides.back };
                 if let Some(other) = side.replace(i as u32) {
                     let (one, other) = (tags[other as usize], tags[i]);
@@ -32,16 +32,16 @@ impl Edges {
                 }
             }
         }
-        Ok(Self(edges))
+        Ok(Self(known))
     }
 
     /// Refuses a mesh of which a part shares no edge with the rest.
-    pub fn one_piece(&self, cells: &[Cell], nodes: &[Vector2<f64>]) -> Outcome<()> {
+    pub fn one_piece(&self, cells: &[Cell<2>], nodes: &[Vector2<f64>]) -> Outcome<()> {
         let mut reached = vec![false; cells.len()];
         let mut next = vec![0];
         reached[0] = true;
         while let Some(cell) = next.pop() {
-            for (a, b) in cells[cell].edges() {
+            for (a, b) in edges(&cells[cell]) {
                 let sides = self.0.get(&(a.min(b), a.max(b))).copied().unwrap_or_default();
                 for other in [sides.forth, sides.back].into_iter().flatten() {
                     if !std::mem::replace(&mut reached[other as usize], true) {
@@ -72,6 +72,11 @@ impl Edges {
     }
 }
 
+/// The edges of a cell, each from one corner to the next.
+fn edges(cell: &Cell<2>) -> impl Iterator<Item = (u32, u32)> {
+    cell.sides().map(|side| (side[0], side[1]))
+}
+
 /// The outline, with the names that the file has for its parts.
 pub(super) struct Outline<'a> {
     pub contents: &'a Contents,
@@ -88,7 +93,7 @@ struct Line {
 
 impl Outline<'_> {
     /// The contact face: one line along which x grows, with the body below it.
-    pub fn face(&self, name: &str) -> Outcome<Face> {
+    pub fn face(&self, name: &str) -> Outcome<Face<2>> {
         let unfit = |reason: String| Flaw::Unfit(Role::Contact, reason);
         let lines = self.lines(name, Role::Contact)?;
         let chain = chain(&lines).map_err(|node| {
@@ -100,7 +105,6 @@ impl Outline<'_> {
             chain.reverse();
         }
         let place = |i: usize| self.nodes[chain[i] as usize];
-        let mut edges = Vec::with_capacity(chain.len() - 1);
         for i in 0..chain.len() - 1 {
             let along = place(i + 1) - place(i);
             if along.x <= 1e-9 * along.norm() {
@@ -113,13 +117,14 @@ impl Outline<'_> {
                 let (x, z) = (place(i).x, place(i).y);
                 return Err(unfit(format!("has the body above it at ({x:.4e}, {z:.4e}) m; the body must lie below")));
             }
-            let length = along.norm();
-            edges.push(Edge { ends: [i, i + 1], start: place(i).x, length, tangent: along / length });
         }
         let top = (0..chain.len()).map(|i| place(i).y).fold(f64::NEG_INFINITY, f64::max);
-        let x = (0..chain.len()).map(|i| place(i).x).collect();
-        let recess = (0..chain.len()).map(|i| top - place(i).y).collect();
-        Ok(Face { unknown: chain, x, recess, edges })
+        let places: Vec<Vector2<f64>> =
+            (0..chain.len()).map(|i| Vector2::new(place(i).x, -(top - place(i).y))).collect();
+        let edge = |(i, ends): (usize, &[Vector2<f64>])| Facet { nodes: vec![i, i + 1], corners: ends.to_vec() };
+        let facets: Vec<_> = places.windows(2).enumerate().map(edge).collect();
+        let grid = Grid { axes: vec![Axis { places: places.iter().map(|place| place.x).collect(), period: None }] };
+        Ok(Face::new(chain, places, facets, Some(grid)))
     }
 
     /// The held components of every node.

@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 
 use super::boundary::{Edges, Outline};
 use super::{Contents, Element, Flaw, Kind, Outcome, Role, called};
+use crate::element;
 use crate::mesh::{Cell, Mesh};
 
 /// What the physical groups of a file, by their names or numbers, are to the mesh.
@@ -27,7 +28,7 @@ pub struct Roles {
 /// # Errors
 /// [`Flaw`] where a name is missing, a cell is degenerate or lies over its neighbour, the body is in pieces or the
 /// contact face is not one line with the body below it.
-pub fn build(contents: &Contents, roles: &Roles) -> Outcome<Mesh> {
+pub fn build(contents: &Contents, roles: &Roles) -> Outcome<Mesh<2>> {
     if contents.elements.iter().all(|element| contents.groups[element.group].is_empty()) {
         return Err(Flaw::File(NO_GROUPS.to_owned()));
     }
@@ -118,12 +119,13 @@ fn plane(places: &[[f64; 3]]) -> Outcome<Vec<Vector2<f64>>> {
 }
 
 /// The cell counter-clockwise; each corner must turn the same way by more than round-off.
-fn oriented(element: &Element, index: &HashMap<u64, u32>, nodes: &[Vector2<f64>]) -> Outcome<Cell> {
-    let [a, b, c, d] = element.nodes.map(|node| index.get(&node).copied().unwrap_or(u32::MAX));
-    let cell = match element.kind {
-        Kind::Quadrilateral => Cell::Quadrilateral([a, b, c, d]),
-        _ => Cell::Triangle([a, b, c]),
+fn oriented(element: &Element, index: &HashMap<u64, u32>, nodes: &[Vector2<f64>]) -> Outcome<Cell<2>> {
+    let list = element.nodes.map(|node| index.get(&node).copied().unwrap_or(u32::MAX));
+    let kind = match element.kind {
+        Kind::Quadrilateral => element::Kind::Multilinear,
+        _ => element::Kind::Simplex,
     };
+    let cell = Cell::new(kind, &list);
     let corners: Vec<Vector2<f64>> = cell.corners().iter().map(|&node| nodes[node as usize]).collect();
     let n = corners.len();
     let turn = |i: usize| {
@@ -133,10 +135,11 @@ fn oriented(element: &Element, index: &HashMap<u64, u32>, nodes: &[Vector2<f64>]
     let turns: Vec<f64> = (0..n).map(turn).collect();
     match (turns.iter().all(|&turn| turn > 1e-8), turns.iter().all(|&turn| turn < -1e-8)) {
         (true, _) => Ok(cell),
-        (_, true) => Ok(match cell {
-            Cell::Triangle([a, b, c]) => Cell::Triangle([a, c, b]),
-            Cell::Quadrilateral([a, b, c, d]) => Cell::Quadrilateral([a, d, c, b]),
-        }),
+        (_, true) => {
+            let mut backward = cell.corners().to_vec();
+            backward[1..].reverse();
+            Ok(Cell::new(kind, &backward))
+        }
         _ => {
             let centre = corners.iter().sum::<Vector2<f64>>() / n as f64;
             let reason = format!(

@@ -81,17 +81,18 @@ fn both_versions_give_the_same_mesh() {
         assert_eq!((mesh.nodes.len(), mesh.cells.len()), (9, 5));
         assert_eq!(mesh.regions, [1, 1, 0, 0, 0]);
         // All cells run counter-clockwise, whatever their surface does.
-        let area = |cell: &Cell| {
+        let area = |cell: &Cell<2>| {
             let corner = |node: u32| mesh.nodes[node as usize];
-            cell.edges().map(|(a, b)| corner(a).perp(&corner(b)) / 2.0).sum::<f64>()
+            cell.sides().map(|side| corner(side[0]).perp(&corner(side[1])) / 2.0).sum::<f64>()
         };
         assert!(mesh.cells.iter().all(|cell| area(cell) > 0.2));
         assert!((mesh.cells.iter().map(area).sum::<f64>() - 2.1).abs() < 1e-14);
         // The face runs along +x, its middle on top.
-        assert_eq!(mesh.face.x, [0.0, 1.0, 2.0]);
-        assert_eq!(mesh.face.recess, [0.1, 0.0, 0.1]);
-        assert!((mesh.face.edges[0].tangent.y * mesh.face.edges[0].length - 0.1).abs() < 1e-15);
-        assert_eq!(mesh.face.edges[1].ends, [1, 2]);
+        assert_eq!(
+            mesh.face.places.iter().map(|place| [place.x, -place.y]).collect::<Vec<_>>(),
+            [[0.0, 0.1], [1.0, 0.0], [2.0, 0.1]]
+        );
+        assert_eq!(mesh.face.facets[1].nodes, [1, 2]);
         // The base is fixed, the left side is held along x only.
         assert_eq!(mesh.held.iter().filter(|held| **held == [true, true]).count(), 3);
         assert_eq!(mesh.held.iter().filter(|held| **held == [true, false]).count(), 2);
@@ -177,7 +178,7 @@ fn binary_files_give_the_same_mesh() {
     let roles = Roles { contact: "contact".into(), fixed: vec!["3".into()], regions: vec!["body".into()], ..roles() };
     let roles = Roles { roller: Vec::new(), ..roles };
     let expected = build(&read(TEXT).unwrap(), &roles).unwrap();
-    assert_eq!((expected.cells.len(), expected.face.x.len()), (14, 3));
+    assert_eq!((expected.cells.len(), expected.face.count()), (14, 3));
     for file in [LEGACY.to_vec(), MODERN.to_vec(), turned_2(LEGACY), turned_4(MODERN)] {
         let mesh = build(&read(&file).unwrap(), &roles).unwrap();
         assert_eq!(mesh.cells, expected.cells);

@@ -1,6 +1,6 @@
 //! The state of the condensed problem between two steps, in a snapshot and out of it.
 
-use nalgebra::Vector2;
+use nalgebra::SVector;
 
 use super::super::response::Response;
 use super::super::traction::{Factor, Linearised};
@@ -10,10 +10,10 @@ use crate::error::Result;
 use crate::petsc::{Step, Vector};
 use crate::snapshot::{NaturalOrder, Snapshot};
 
-impl<R: Response> Condensed<R> {
+impl<const D: usize, R: Response<D>> Condensed<D, R> {
     /// Adds the accepted state, and what is reused of factors.
     pub(super) fn write_state(&mut self, snapshot: &mut Snapshot) -> Result<()> {
-        let flat = |list: &[Vector2<f64>]| list.iter().flat_map(|t| [t.x, t.y]).collect();
+        let flat = |list: &[SVector<f64, D>]| list.iter().flatten().copied().collect();
         snapshot.put("tractions", flat(&self.accepted));
         snapshot.put("tractions-before", flat(&self.before));
         self.face.save(snapshot);
@@ -31,11 +31,11 @@ impl<R: Response> Condensed<R> {
     /// Takes them, and the unknowns.
     pub(super) fn read_state(&mut self, snapshot: &Snapshot, u: &mut Vector) -> Result<()> {
         for (name, list) in [("tractions", &mut self.accepted), ("tractions-before", &mut self.before)] {
-            let mut flat = vec![0.0; 2 * list.len()];
+            let mut flat = vec![0.0; D * list.len()];
             if !flat.is_empty() {
                 snapshot.fill(name, &mut flat)?;
             }
-            *list = flat.as_chunks().0.iter().map(|&[x, z]| Vector2::new(x, z)).collect();
+            *list = flat.chunks_exact(D).map(SVector::from_column_slice).collect();
         }
         write(u, self.accepted.iter().copied())?;
         self.face.restore(snapshot)?;
@@ -53,7 +53,7 @@ impl<R: Response> Condensed<R> {
         let step = Step { t, dt };
         self.response.prepare(step)?;
         if let Some(behind) = self.behind() {
-            let points = snapshot.get("factor")?.chunks_exact(Linearised::<2>::NUMBERS).map(Linearised::read).collect();
+            let points = snapshot.get("factor")?.chunks_exact(Linearised::<D>::NUMBERS).map(Linearised::read).collect();
             let factor = Factor::new(points, &|j, rows| behind.influence(j, rows)).ok();
             self.linear = Linear { factor, made_for: Some((step, secant)), used: used as usize, ..Linear::default() };
         }

@@ -1,6 +1,6 @@
 //! Newton's linear system of the condensed problem: what it is made of at a state, its product and its solution.
 
-use nalgebra::Vector2;
+use nalgebra::SVector;
 
 use super::super::response::Response;
 use super::super::traction::{self, Border, Factor, Fourier, Linearised};
@@ -13,19 +13,19 @@ const STALE_AFTER: usize = 10;
 
 /// Newton's linear system.
 #[derive(Default)]
-pub(super) struct Linear {
-    pub points: Vec<Linearised<2>>,
+pub(super) struct Linear<const D: usize> {
+    pub points: Vec<Linearised<D>>,
     /// Where a force is held.
-    pub border: Option<Border<2>>,
-    pub factor: Option<Factor<2>>,
-    pub fourier: Option<Fourier>,
+    pub border: Option<Border<D>>,
+    pub factor: Option<Factor<D>>,
+    pub fourier: Option<Fourier<D>>,
     /// The step that the factor was made for, and the secant.
     pub made_for: Option<(Step, f64)>,
     /// Solves since the last tangent.
     pub used: usize,
 }
 
-impl<R: Response> Condensed<R> {
+impl<const D: usize, R: Response<D>> Condensed<D, R> {
     /// Makes the system that of the state that was tried last.
     pub(super) fn linearise(&mut self, step: Step) -> Result<()> {
         let stage = self.stage.as_ref().ok_or_else(unprepared)?;
@@ -34,7 +34,7 @@ impl<R: Response> Condensed<R> {
         let border = stage.placement.force.map(|_| Border::new(&stage.sites, &points));
         let Linear { factor, made_for, used, .. } = &self.linear;
         let points_are_nodes = !self.face.interface.points().share_nodes();
-        let fourier = match points_are_nodes && 2 * points.len() > LARGE_PERIODIC_FACE {
+        let fourier = match points_are_nodes && D * points.len() > LARGE_PERIODIC_FACE {
             true => Fourier::new(
                 behind.compliance,
                 behind.secant,
@@ -65,7 +65,7 @@ impl<R: Response> Condensed<R> {
             product.view_mut()?;
             return Ok(());
         };
-        let dt = tractions(v)?;
+        let dt = tractions::<D>(v)?;
         let mut values = traction::product(&self.linear.points, &dt, &behind.moves(&dt)?);
         let mut last = self.last(v)?.map_or(0.0, |(_, last)| last);
         if let Some(border) = &self.linear.border {
@@ -78,11 +78,11 @@ impl<R: Response> Condensed<R> {
     /// x = J^-1 b, or nearly so.
     pub(super) fn solution(&mut self, b: &Vector, x: &mut Vector) -> Result<()> {
         self.linear.used += 1;
-        let (right, mut last) = (tractions(b)?, self.last(b)?.map_or(0.0, |(_, last)| last));
-        let inverse = |right: &[Vector2<f64>]| match (&self.linear, self.behind()) {
+        let (right, mut last) = (tractions::<D>(b)?, self.last(b)?.map_or(0.0, |(_, last)| last));
+        let inverse = |right: &[SVector<f64, D>]| match (&self.linear, self.behind()) {
             (Linear { fourier: Some(fourier), points, .. }, Some(_)) => fourier.solve(points, right),
             (Linear { factor: Some(factor), .. }, Some(behind)) => factor.solve(right, |t| behind.moves(t)),
-            _ => Ok(vec![Vector2::repeat(f64::NAN); right.len()]),
+            _ => Ok(vec![SVector::repeat(f64::NAN); right.len()]),
         };
         let solution = match (&self.linear.border, &self.stage) {
             (Some(border), Some(stage)) => {

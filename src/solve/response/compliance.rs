@@ -4,41 +4,46 @@
 
 use std::cell::OnceCell;
 
-use nalgebra::Matrix2;
+use nalgebra::{DMatrix, SMatrix};
 
 use super::super::body::Body;
-use super::waves::{Elimination, Transform, Wave};
+use super::transform::{Transform, Wave};
 use crate::error::Result;
+use crate::mesh::Face;
 use crate::petsc::Cholesky;
 
-/// C over (x, z of each face node), m per N/m; zero rows and columns where a component is held.
-pub struct Compliance {
+/// C over the components of each face node, m per N/m (m/N in space); zero rows and columns where a component is held.
+pub struct Compliance<const D: usize> {
     order: usize,
-    form: Form,
+    form: Form<D>,
     /// See [`Self::smallest`].
     smallest: OnceCell<f64>,
 }
 
-enum Form {
-    /// Column-major.
-    Dense(Vec<f64>),
-    /// Block-circulant: one product is a Fourier transform there and back, and memory is that of two columns.
+enum Form<const D: usize> {
+    Dense {
+        /// Column-major.
+        values: Vec<f64>,
+        /// See [`Face::checkerboard`].
+        signs: Vec<f64>,
+    },
+    /// Block-circulant: one product is a Fourier transform there and back, and memory is that of D columns.
     Periodic {
-        transform: Transform,
-        /// C of each wavenumber.
-        waves: Vec<Matrix2<f64>>,
-        /// The columns of the first node's x and z.
-        first: [Vec<f64>; 2],
+        transform: Transform<D>,
+        /// C of each wave vector.
+        waves: Vec<SMatrix<f64, D, D>>,
+        /// The columns of the components of the first node.
+        first: [Vec<f64>; D],
     },
 }
 
-impl Compliance {
-    fn new(order: usize, form: Form) -> Self {
+impl<const D: usize> Compliance<D> {
+    fn new(order: usize, form: Form<D>) -> Self {
         Self { order, form, smallest: OnceCell::new() }
     }
 
     /// By the Schur complement of a body that this rank holds whole.
-    pub fn by_schur_complement(body: &Body) -> Result<Self> {
+    pub fn by_schur_complement(body: &Body<D>) -> Result<Self> {
         let kept: Vec<i32> = Self::free_rows(body).into_iter().map(|(_, row)| row).collect();
         let mut stiffness = body.elastic()?;
         stiffness.declare_positive_definite()?;
@@ -47,69 +52,70 @@ impl Compliance {
     }
 
     /// The face's components that are not held: their place on the face and their row in the body.
-    pub fn free_rows(body: &Body) -> Vec<(usize, i32)> {
+    pub fn free_rows(body: &Body<D>) -> Vec<(usize, i32)> {
         let (mesh, numbering) = (body.mesh(), body.numbering());
         let components =
-            mesh.face.unknown.iter().enumerate().flat_map(|(i, &unknown)| [(i, unknown, 0), (i, unknown, 1)]);
+            mesh.face.unknown.iter().enumerate().flat_map(|(i, &unknown)| (0..D).map(move |c| (i, unknown, c)));
         components
             .filter(|&(_, unknown, component)| !mesh.held[unknown as usize][component])
             .map(|(i, unknown, component)| {
-                (2 * i + component, 2 * numbering.global[unknown as usize] + component as i32)
+                (D * i + component, D as i32 * numbering.global[unknown as usize] + component as i32)
             })
             .collect()
     }
 
     /// From the compliance of the components that are not held.
-    pub fn from_free(body: &Body, inverse: &[f64]) -> Self {
+    pub fn from_free(body: &Body<D>, inverse: &[f64]) -> Self {
         let places: Vec<usize> = Self::free_rows(body).into_iter().map(|(place, _)| place).collect();
-        let order = 2 * body.mesh().face.unknown.len();
+        let face = &body.mesh().face;
+        let order = D * face.count();
         let mut values = vec![0.0; order * order];
         for (column, source) in places.iter().zip(inverse.chunks_exact(places.len())) {
             for (row, value) in places.iter().zip(source) {
                 values[column * order + row] = *value;
             }
         }
-        Self::new(order, Form::Dense(values))
+        Self::new(order, Form::Dense { values, signs: face.checkerboard() })
     }
 
-    /// Of so many components, for [`Self::set_column`] to fill.
-    pub fn unknown(order: usize) -> Self {
-        Self::new(order, Form::Dense(vec![0.0; order * order]))
+    /// Of a face, for [`Self::set_column`] to fill.
+    pub fn unknown(face: &Face<D>) -> Self {
+        let order = D * face.count();
+        Self::new(order, Form::Dense { values: vec![0.0; order * order], signs: face.checkerboard() })
     }
 
     /// Makes a column known: the displacements at `places` of the face under a unit force.
     pub fn set_column(&mut self, column: usize, places: &[usize], values: &[f64]) {
-        if let Form::Dense(all) = &mut self.form {
+        if let Form::Dense { values: all, .. } = &mut self.form {
             let target = &mut all[column * self.order..][..self.order];
             places.iter().zip(values).for_each(|(&place, value)| target[place] = *value);
         }
     }
 
-    /// Of a periodic layer of so many columns.
-    pub fn of_periodic_layer(elimination: &Elimination, columns: usize) -> Result<Self> {
-        let transform = Transform::new(columns);
-        let waves: Vec<Matrix2<f64>> = elimination.face().collect();
-        let column = |component: usize| {
-            let mut force = vec![0.0; 2 * columns];
+    /// Of a periodic layer, with C of each of its waves.
+    pub fn of_periodic_layer(transform: Transform<D>, waves: Vec<SMatrix<f64, D, D>>) -> Result<Self> {
+        let order = D * transform.nodes();
+        let mut first = [const { Vec::new() }; D];
+        for (component, first) in first.iter_mut().enumerate() {
+            let mut force = vec![0.0; order];
             force[component] = 1.0;
-            response(&transform, &waves, &force)
-        };
-        let first = [column(0)?, column(1)?];
-        Ok(Self::new(2 * columns, Form::Periodic { transform, waves, first }))
+            *first = response(&transform, &waves, &force)?;
+        }
+        Ok(Self::new(order, Form::Periodic { transform, waves, first }))
     }
 
-    /// C of each wavenumber, and the transform; none where the face is not that of a periodic layer.
-    pub fn waves(&self) -> Option<(&Transform, &[Matrix2<f64>])> {
+    /// C of each wave vector, and the transform; none where the face is not that of a periodic layer.
+    pub fn waves(&self) -> Option<(&Transform<D>, &[SMatrix<f64, D, D>])> {
         match &self.form {
             Form::Periodic { transform, waves, .. } => Some((transform, waves)),
-            Form::Dense(_) => None,
+            Form::Dense { .. } => None,
         }
     }
 
     /// Whether a component of the face is held.
     pub fn is_held(&self, place: usize) -> bool {
         match &self.form {
-            Form::Dense(values) => values[place * self.order + place] == 0.0,
+            Form::Dense { values, .. } => values[place * self.order + place] == 0.0,
             Form::Periodic { .. } => false,
         }
     }
@@ -121,19 +127,17 @@ impl Compliance {
 
     /// target += factor times the rows `places` of a column.
     pub fn add_column(&self, column: usize, factor: f64, places: &[usize], target: &mut [f64]) {
+        for (value, &place) in target.iter_mut().zip(places) {
+            *value += factor * self.entry(place, column);
+        }
+    }
+
+    /// One entry.
+    fn entry(&self, row: usize, column: usize) -> f64 {
         match &self.form {
-            Form::Dense(values) => {
-                let source = &values[column * self.order..][..self.order];
-                for (value, &place) in target.iter_mut().zip(places) {
-                    *value += factor * source[place];
-                }
-            }
-            Form::Periodic { first, .. } => {
-                let (source, shift) = (&first[column % 2], column - column % 2);
-                for (value, &place) in target.iter_mut().zip(places) {
-                    let row = if place >= shift { place - shift } else { place + self.order - shift };
-                    *value += factor * source[row];
-                }
+            Form::Dense { values, .. } => values[column * self.order + row],
+            Form::Periodic { transform, first, .. } => {
+                first[column % D][D * transform.apart(row / D, column / D) + row % D]
             }
         }
     }
@@ -141,7 +145,7 @@ impl Compliance {
     /// u += C f, for forces given as (place, force); a place may come more than once.
     pub fn add_displacements(&self, forces: impl Iterator<Item = (usize, f64)>, u: &mut [f64]) -> Result<()> {
         match &self.form {
-            Form::Dense(values) => {
+            Form::Dense { values, .. } => {
                 for (place, force) in forces.filter(|(_, force)| *force != 0.0) {
                     for (u, c) in u.iter_mut().zip(&values[place * self.order..][..self.order]) {
                         *u += c * force;
@@ -160,46 +164,47 @@ impl Compliance {
     }
 
     /// The displacement of node i under unit forces on node j, m per N/m.
-    pub fn block(&self, i: usize, j: usize) -> Matrix2<f64> {
-        let mut block = Matrix2::zeros();
-        match &self.form {
-            Form::Dense(values) => {
-                for k in 0..2 {
-                    let column = &values[(2 * j + k) * self.order + 2 * i..][..2];
-                    block.column_mut(k).copy_from_slice(column);
-                }
+    pub fn block(&self, i: usize, j: usize) -> SMatrix<f64, D, D> {
+        let mut block = SMatrix::<f64, D, D>::zeros();
+        let (source, first) = match &self.form {
+            Form::Dense { values, .. } => {
+                (D * i, (0..D).map(|k| &values[(D * j + k) * self.order..]).collect::<Vec<_>>())
             }
-            Form::Periodic { first, .. } => {
-                let row = (2 * i + self.order - 2 * j) % self.order;
-                for (k, first) in first.iter().enumerate() {
-                    block.column_mut(k).copy_from_slice(&first[row..][..2]);
-                }
+            Form::Periodic { transform, first, .. } => {
+                (D * transform.apart(i, j), first.iter().map(|column| &column[..]).collect())
             }
+        };
+        for (k, column) in first.into_iter().enumerate() {
+            block.column_mut(k).copy_from_slice(&column[source..][..D]);
         }
         block
     }
 
     /// About the smallest eigenvalue of C over what is not held, m per N/m: of a periodic layer exactly, of any other face
-    /// that of the shorter-waved of a checkerboard of forces along the face and one across it.
+    /// that of the shortest-waved of the checkerboards of forces along each direction.
     pub fn smallest(&self) -> f64 {
         *self.smallest.get_or_init(|| match &self.form {
-            Form::Dense(values) => {
-                [0, 1].map(|k| checkerboard(values, self.order, k)).into_iter().fold(f64::INFINITY, f64::min)
+            Form::Dense { values, signs } => {
+                (0..D).map(|k| checkerboard(values, (self.order, D), signs, k)).fold(f64::INFINITY, f64::min)
             }
             Form::Periodic { waves, .. } => {
-                waves.iter().map(|c| c.symmetric_eigenvalues().min()).fold(f64::INFINITY, f64::min)
+                let smallest = |c: &SMatrix<f64, D, D>| {
+                    DMatrix::from_column_slice(D, D, c.as_slice()).symmetric_eigenvalues().min()
+                };
+                waves.iter().map(smallest).fold(f64::INFINITY, f64::min)
             }
         })
     }
 }
 
-/// v.C v/v.v for a checkerboard v of the components k of all nodes; infinite where all are held.
-fn checkerboard(values: &[f64], order: usize, k: usize) -> f64 {
-    let sign = |node: usize| if node.is_multiple_of(2) { 1.0 } else { -1.0 };
-    let free: Vec<usize> = (k..order).step_by(2).filter(|&place| values[place * order + place] > 0.0).collect();
+/// v.C v/v.v for a checkerboard v of the components k, of so many, of all nodes; infinite where all are held.
+fn checkerboard(values: &[f64], (order, components): (usize, usize), signs: &[f64], k: usize) -> f64 {
+    let sign = |place: usize| signs[place / components];
+    let free: Vec<usize> =
+        (k..order).step_by(components).filter(|&place| values[place * order + place] > 0.0).collect();
     let product = |&column: &usize| {
-        let of = free.iter().map(|&row| sign(row / 2) * values[column * order + row]).sum::<f64>();
-        sign(column / 2) * of
+        let of = free.iter().map(|&row| sign(row) * values[column * order + row]).sum::<f64>();
+        sign(column) * of
     };
     match free.len() {
         0 => f64::INFINITY,
@@ -208,8 +213,12 @@ fn checkerboard(values: &[f64], order: usize, k: usize) -> f64 {
 }
 
 /// The displacements of a periodic face under forces on it.
-fn response(transform: &Transform, waves: &[Matrix2<f64>], forces: &[f64]) -> Result<Vec<f64>> {
+fn response<const D: usize>(
+    transform: &Transform<D>,
+    waves: &[SMatrix<f64, D, D>],
+    forces: &[f64],
+) -> Result<Vec<f64>> {
     let mut w = transform.forward(forces)?;
-    w.iter_mut().zip(waves).for_each(|(w, c): (&mut Wave, _)| *w = c * *w);
+    w.iter_mut().zip(waves).for_each(|(w, c): (&mut Wave<D>, _)| *w = c * *w);
     transform.inverse(w.iter())
 }

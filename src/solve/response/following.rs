@@ -34,13 +34,13 @@ pub struct Relaxation {
 }
 
 /// A body that follows its face.
-pub struct Following {
+pub struct Following<const D: usize> {
     /// The elastic compliance at the instantaneous moduli, on rank 0.
-    pub compliance: Option<Rc<Compliance>>,
+    pub compliance: Option<Rc<Compliance<D>>>,
     /// None = elastic.
     pub relaxation: Option<Relaxation>,
     /// What is behind the face.
-    pub interior: Interior,
+    pub interior: Interior<D>,
     /// c for the step that was prepared; 1 without memory.
     pub secant: f64,
     /// Only where the energy is asked for.
@@ -58,7 +58,7 @@ pub struct FaceAccount {
     work: Vector,
 }
 
-impl Response for Following {
+impl<const D: usize> Response<D> for Following<D> {
     fn prepare(&mut self, step: Step) -> Result<()> {
         if let Some(Relaxation { arms, series }) = &self.relaxation {
             self.secant = series.secant(&arms.factors(step.dt));
@@ -80,7 +80,7 @@ impl Response for Following {
         self.secant
     }
 
-    fn compliance(&self) -> Option<&Compliance> {
+    fn compliance(&self) -> Option<&Compliance<D>> {
         self.compliance.as_deref()
     }
 

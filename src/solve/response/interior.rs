@@ -10,19 +10,19 @@ use crate::error::Result;
 use crate::petsc::{Cholesky, Matrix, Vector};
 
 /// A body whose interior follows its face: u_I = H u_G.
-pub struct Interior {
+pub struct Interior<const D: usize> {
     comm: SimpleCommunicator,
-    solid: Solid,
+    solid: Solid<D>,
     /// Of a periodic layer.
-    column: Option<PeriodicColumn>,
+    column: Option<PeriodicColumn<D>>,
     /// Made when first asked for: most scenes never do.
-    recovery: Option<(Body, Extension)>,
+    recovery: Option<(Body<D>, Extension<D>)>,
 }
 
 /// H.
-enum Extension {
+enum Extension<const D: usize> {
     /// By wavenumber.
-    Waves(Below),
+    Waves(Below<D>),
     /// Of any body.
     Sparse(Inner),
 }
@@ -37,19 +37,19 @@ struct Inner {
     diagonal: f64,
 }
 
-impl Interior {
+impl<const D: usize> Interior<D> {
     /// The interior of a solid, with its column where that is a periodic layer; costs nothing until [`Self::fields`].
-    pub fn new(comm: &SimpleCommunicator, solid: Solid, column: Option<PeriodicColumn>) -> Self {
+    pub fn new(comm: &SimpleCommunicator, solid: Solid<D>, column: Option<PeriodicColumn<D>>) -> Self {
         Self { comm: comm.duplicate(), solid, column, recovery: None }
     }
 
     /// The fields of the body for given displacements and effective displacements (mu_0 u + sum mu_i z_i; none = the
-    /// displacements) of the face: x, z of each node, m, the same on all ranks.
+    /// displacements) of the nodes of the face, m, the same on all ranks.
     pub fn fields(&mut self, displacement: &[f64], effective: Option<&[f64]>) -> Result<BulkFields> {
         let (body, extension) = match &mut self.recovery {
             Some(recovery) => recovery,
             place => {
-                let body = Body::new(self.comm.duplicate(), self.solid.clone())?;
+                let body = Body::new(self.comm.duplicate(), &self.solid)?;
                 let extension = match &self.column {
                     Some(column) => Extension::Waves(Below::new(column)?),
                     None => Extension::Sparse(Inner::new(&body)?),
@@ -66,9 +66,9 @@ impl Interior {
     }
 }
 
-impl Extension {
+impl<const D: usize> Extension<D> {
     /// The displacements of the whole body, m.
-    fn extend(&self, face: &[f64], body: &Body) -> Result<Vector> {
+    fn extend(&self, face: &[f64], body: &Body<D>) -> Result<Vector> {
         match self {
             Self::Waves(below) => below.extend(face, body),
             Self::Sparse(inner) => inner.extend(face, body),
@@ -77,13 +77,13 @@ impl Extension {
 }
 
 impl Inner {
-    fn new(body: &Body) -> Result<Self> {
-        let (stiffness, diagonal) = (body.elastic()?, body.solid().diagonal());
+    fn new<const D: usize>(body: &Body<D>) -> Result<Self> {
+        let (stiffness, diagonal) = (body.elastic()?, body.cells().diagonal());
         let numbering = body.numbering();
-        let components = body.mesh().face.unknown.iter().flat_map(|&unknown| [(unknown, 0), (unknown, 1)]);
+        let components = body.mesh().face.unknown.iter().flat_map(|&unknown| (0..D).map(move |i| (unknown, i)));
         let rows: Vec<Option<usize>> =
-            components.map(|(unknown, i)| numbering.local(unknown).map(|node| 2 * node + i)).collect();
-        let first = 2 * numbering.owned.start;
+            components.map(|(unknown, i)| numbering.local(unknown).map(|node| D * node + i)).collect();
+        let first = D * numbering.owned.start;
         let owned: Vec<i32> = rows.iter().flatten().map(|row| (first + row) as i32).collect();
         let mut inner = stiffness.duplicate()?;
         inner.fix(&owned, diagonal)?;
@@ -92,7 +92,7 @@ impl Inner {
         Ok(Self { stiffness, factor, rows, diagonal })
     }
 
-    fn extend(&self, face: &[f64], body: &Body) -> Result<Vector> {
+    fn extend<const D: usize>(&self, face: &[f64], body: &Body<D>) -> Result<Vector> {
         let (mut values, mut right) = (body.vector()?, body.vector()?);
         self.put(face, &mut values)?;
         self.stiffness.multiply(&values, &mut right)?;

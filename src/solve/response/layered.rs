@@ -8,84 +8,85 @@ use super::super::{BulkFields, Work};
 use super::compliance::Compliance;
 use super::remembering::{Inside, Solvers};
 use super::sparse::unprepared;
-use super::waves::{Elimination, Operator, Transform, Wave};
+use super::transform::{Transform, Wave};
+use super::waves::{Elimination, Operator, face_compliance};
 use crate::bulk::{Account, Products, Series};
-use crate::element::plane::Split;
+use crate::element::solid::{Blocks, Split};
 use crate::energy::BodyEnergy;
 use crate::error::Result;
-use crate::mesh::Cell;
 use crate::petsc::{Step, Vector};
 use crate::rheology::{Factors, Memory};
 use crate::snapshot::Snapshot;
 
 /// One column of a periodic layer.
-pub struct PeriodicColumn {
+pub struct PeriodicColumn<const D: usize> {
     /// Its cells, from the top down.
-    cells: Vec<(Split<8>, Region)>,
-    /// How many such columns there are.
-    columns: usize,
+    cells: Vec<(Split<D>, Region)>,
+    /// How many such columns there are along each axis of the face.
+    counts: Vec<usize>,
 }
 
-impl PeriodicColumn {
-    /// Of a layer's mesh, whose first cells are those of one column.
-    pub fn new(solid: &Solid, [columns, rows]: [usize; 2]) -> Self {
-        let split = |cell: usize| match solid.mesh.cells[cell] {
-            Cell::Quadrilateral(corners) => Some((solid.quadrilateral(corners), solid.region(cell))),
-            Cell::Triangle(_) => None,
-        };
-        Self { cells: (0..rows).filter_map(split).collect(), columns }
+impl<const D: usize> PeriodicColumn<D> {
+    /// Of a layer that repeats in all directions of its face; none of any other body.
+    pub fn new(solid: &Solid<D>) -> Option<Self> {
+        let (column, counts) = solid.column()?;
+        let cells = (0..column.mesh.cells.len()).map(|cell| (column.split(cell), column.region(cell)));
+        Some(Self { cells: cells.collect(), counts })
     }
 
-    /// The stiffness with each part of the bulk times its factor.
-    fn operator(&self, factors: &[f64]) -> Operator {
-        let with = |(split, region): &(Split<8>, Region)| {
+    /// The stiffness of its cells with each part of the bulk times its factor.
+    fn stiffness(&self, factors: &[f64]) -> Vec<Blocks<D>> {
+        let with = |(split, region): &(Split<D>, Region)| {
             let relaxed = region.relaxed(factors);
             split.with(relaxed.shear, relaxed.bulk)
         };
-        Operator::new(&self.cells.iter().map(with).collect::<Vec<_>>(), self.columns)
+        self.cells.iter().map(with).collect()
     }
 
-    /// At the instantaneous moduli, of a bulk of one part.
-    fn elimination(&self) -> Result<Elimination> {
-        Elimination::new(&self.operator(&[1.0]))
+    fn transform(&self) -> Transform<D> {
+        Transform::new(&self.counts)
     }
 
     /// The compliance of the face at the instantaneous moduli, of a bulk of one part.
-    pub fn compliance(&self) -> Result<Compliance> {
-        Compliance::of_periodic_layer(&self.elimination()?, self.columns)
+    pub fn compliance(&self) -> Result<Compliance<D>> {
+        let transform = self.transform();
+        let waves = face_compliance(&self.stiffness(&[1.0]), &transform)?;
+        Compliance::of_periodic_layer(transform, waves)
     }
 }
 
 /// An unloaded periodic layer below its face, of a bulk of one part.
-pub struct Below {
-    elimination: Elimination,
-    transform: Transform,
+pub struct Below<const D: usize> {
+    elimination: Elimination<D>,
+    transform: Transform<D>,
 }
 
-impl Below {
+impl<const D: usize> Below<D> {
     /// The layer of these columns.
-    pub fn new(column: &PeriodicColumn) -> Result<Self> {
-        Ok(Self { elimination: column.elimination()?, transform: Transform::new(column.columns) })
+    pub fn new(column: &PeriodicColumn<D>) -> Result<Self> {
+        let transform = column.transform();
+        let operator = Operator::new(&column.stiffness(&[1.0]), &transform);
+        Ok(Self { elimination: Elimination::new(&operator)?, transform })
     }
 
-    /// The displacements of the layer on this rank, for x, z of each face node.
-    pub fn extend(&self, face: &[f64], body: &Body) -> Result<Vector> {
+    /// The displacements of the layer on this rank, for those of each face node.
+    pub fn extend(&self, face: &[f64], body: &Body<D>) -> Result<Vector> {
         vector(&self.elimination.below(&self.transform.forward(face)?), &self.transform, body)
     }
 }
 
 /// Waves as a vector of the body, of which each rank takes its own part.
-fn vector(waves: &[Wave], transform: &Transform, body: &Body) -> Result<Vector> {
+fn vector<const D: usize>(waves: &[Wave<D>], transform: &Transform<D>, body: &Body<D>) -> Result<Vector> {
     let rows = waves.len() / transform.waves();
     let numbering = body.numbering();
     let mut vector = body.vector()?;
     let mut values = vector.view_mut()?;
     for row in 0..rows {
         let of_row = transform.inverse(waves.iter().skip(row).step_by(rows))?;
-        for (column, pair) in of_row.chunks_exact(2).enumerate() {
+        for (column, node) in of_row.chunks_exact(D).enumerate() {
             // Nodes run column by column, downward in each, with the clamped one last.
             if let Some(local) = numbering.local((column * (rows + 1) + row) as u32) {
-                values[2 * local..2 * local + 2].copy_from_slice(pair);
+                values[D * local..][..D].copy_from_slice(node);
             }
         }
     }
@@ -111,23 +112,22 @@ impl Relaxations {
 }
 
 /// The whole layer, on the one rank that solves it. Its fields are waves.
-pub struct Layered {
+pub struct Layered<const D: usize> {
     /// For output.
-    solid: Solid,
-    body: Option<Body>,
-    columns: usize,
+    solid: Solid<D>,
+    body: Option<Body<D>>,
     rows: usize,
     relaxations: Relaxations,
-    parts: Vec<Operator>,
-    transform: Transform,
+    parts: Vec<Operator<D>>,
+    transform: Transform<D>,
     /// The accepted displacements, m.
-    u: Vec<Wave>,
+    u: Vec<Wave<D>>,
     /// The accepted elongations of the arms, m.
-    elongations: Vec<Vec<Wave>>,
-    solvers: Solvers<Solver>,
+    elongations: Vec<Vec<Wave<D>>>,
+    solvers: Solvers<Solver<D>>,
     /// The load of the step that was prepared, swept up to the face.
-    swept: Vec<Wave>,
-    work: Vec<Wave>,
+    swept: Vec<Wave<D>>,
+    work: Vec<Wave<D>>,
     /// u_free, per component of the face.
     face: Vec<f64>,
     /// Only where it is asked for.
@@ -135,34 +135,34 @@ pub struct Layered {
 }
 
 /// A at one step length.
-struct Solver {
-    elimination: Elimination,
-    compliance: Compliance,
+struct Solver<const D: usize> {
+    elimination: Elimination<D>,
+    compliance: Compliance<D>,
 }
 
-impl Layered {
+impl<const D: usize> Layered<D> {
     /// At rest.
-    pub fn new(solid: Solid, column: &PeriodicColumn, relaxations: Relaxations) -> Self {
+    pub fn new(solid: Solid<D>, column: &PeriodicColumn<D>, relaxations: Relaxations) -> Self {
         let count = relaxations.series.len();
         let alone = |part: usize| (0..count).map(|other| f64::from(u8::from(other == part))).collect::<Vec<f64>>();
-        let parts = (0..count).map(|part| column.operator(&alone(part))).collect();
-        let (columns, rows) = (column.columns, column.cells.len());
-        let field = || vec![Wave::zeros(); (columns / 2 + 1) * rows];
+        let transform = column.transform();
+        let parts = (0..count).map(|part| Operator::new(&column.stiffness(&alone(part)), &transform)).collect();
+        let rows = column.cells.len();
+        let field = || vec![Wave::zeros(); transform.waves() * rows];
         Self {
             solid,
             body: None,
-            columns,
             rows,
             parts,
-            transform: Transform::new(columns),
             u: field(),
             elongations: relaxations.times.iter().map(|_| field()).collect(),
             solvers: Solvers::new(),
             swept: field(),
             work: field(),
-            face: vec![0.0; 2 * columns],
+            face: vec![0.0; D * transform.nodes()],
             relaxations,
             account: None,
+            transform,
         }
     }
 
@@ -180,7 +180,7 @@ impl Layered {
             // v = -K du, and so all products with it.
             let mut v = vec![Wave::zeros(); self.u.len()];
             part.subtract_product(&self.work, &mut v);
-            let dot = |field: &[Wave]| -dot(field, &v, (self.columns, self.rows));
+            let dot = |field: &[Wave<D>]| -dot(field, &v, &self.transform, self.rows);
             let change = dot(&self.work);
             let products = Products {
                 sum: change + 2.0 * dot(&self.u),
@@ -200,15 +200,16 @@ impl Layered {
     }
 }
 
-impl Inside for Layered {
+impl<const D: usize> Inside<D> for Layered<D> {
     fn prepare(&mut self, step: Step) -> Result<()> {
         let factors = self.relaxations.factors(step.dt);
-        let Self { relaxations, parts, columns, solvers, .. } = self;
+        let Self { relaxations, parts, transform, solvers, .. } = self;
         solvers.select(step.dt, || {
             let secant = |series: &Option<Series>| series.as_ref().map_or(1.0, |series| series.secant(&factors));
             let secants: Vec<f64> = relaxations.series.iter().map(secant).collect();
             let elimination = Elimination::new(&Operator::sum(parts, &secants))?;
-            Ok(Solver { compliance: Compliance::of_periodic_layer(&elimination, *columns)?, elimination })
+            let waves = elimination.face().collect();
+            Ok(Solver { compliance: Compliance::of_periodic_layer(transform.clone(), waves)?, elimination })
         })?;
         self.swept.fill(Wave::zeros());
         for part in 0..self.parts.len() {
@@ -229,7 +230,7 @@ impl Inside for Layered {
         &self.face
     }
 
-    fn compliance(&self) -> Option<&Compliance> {
+    fn compliance(&self) -> Option<&Compliance<D>> {
         self.solvers.current().map(|solver| &solver.compliance)
     }
 
@@ -265,7 +266,7 @@ impl Inside for Layered {
         if let Some(account) = &self.account {
             account.save(snapshot);
         }
-        let flat = |waves: &[Wave]| waves.iter().flat_map(|wave| wave.as_slice()).copied().collect();
+        let flat = |waves: &[Wave<D>]| waves.iter().flat_map(|wave| wave.as_slice()).copied().collect();
         snapshot.put("waves", flat(&self.u));
         for (index, elongation) in self.elongations.iter().enumerate() {
             snapshot.put(format!("waves-arm-{index}"), flat(elongation));
@@ -279,9 +280,9 @@ impl Inside for Layered {
         }
         let names = std::iter::once("waves".to_owned()).chain((0..).map(|index| format!("waves-arm-{index}")));
         for (name, waves) in names.zip(std::iter::once(&mut self.u).chain(&mut self.elongations)) {
-            let mut flat = vec![0.0; 4 * waves.len()];
+            let mut flat = vec![0.0; 2 * D * waves.len()];
             snapshot.fill(&name, &mut flat)?;
-            for (wave, values) in waves.iter_mut().zip(flat.chunks_exact(4)) {
+            for (wave, values) in waves.iter_mut().zip(flat.chunks_exact(2 * D)) {
                 wave.copy_from_slice(values);
             }
         }
@@ -291,7 +292,7 @@ impl Inside for Layered {
     fn fields(&mut self) -> Result<BulkFields> {
         let mut body = match self.body.take() {
             Some(body) => body,
-            None => Body::new(SimpleCommunicator::self_comm(), self.solid.clone())?,
+            None => Body::new(SimpleCommunicator::self_comm(), &self.solid)?,
         };
         self.combine(1.0, std::iter::empty());
         let u = vector(&self.work, &self.transform, &body)?;
@@ -310,11 +311,10 @@ impl Inside for Layered {
 }
 
 /// The sum over all nodes of the product of two fields.
-fn dot(a: &[Wave], b: &[Wave], (columns, rows): (usize, usize)) -> f64 {
+fn dot<const D: usize>(a: &[Wave<D>], b: &[Wave<D>], transform: &Transform<D>, rows: usize) -> f64 {
     let waves = a.chunks_exact(rows).zip(b.chunks_exact(rows)).enumerate();
-    let of_wave = |(k, (a, b)): (usize, (&[Wave], &[Wave]))| {
-        let twice = if k == 0 || 2 * k == columns { 1.0 } else { 2.0 };
-        twice * a.iter().zip(b).map(|(a, b)| a.dot(b)).sum::<f64>()
+    let of_wave = |(k, (a, b)): (usize, (&[Wave<D>], &[Wave<D>]))| {
+        transform.stands_for(k) * a.iter().zip(b).map(|(a, b)| a.dot(b)).sum::<f64>()
     };
-    waves.map(of_wave).sum::<f64>() / columns as f64
+    waves.map(of_wave).sum::<f64>() / transform.nodes() as f64
 }

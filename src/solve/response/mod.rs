@@ -9,6 +9,7 @@ mod interior;
 mod layered;
 mod remembering;
 mod sparse;
+mod transform;
 mod waves;
 
 use super::{BulkFields, Work};
@@ -23,10 +24,10 @@ pub use interior::Interior;
 pub use layered::{Layered, PeriodicColumn, Relaxations};
 pub use remembering::{Inside, Remembering};
 pub use sparse::Sparse;
-pub use waves::Transform;
+pub use transform::Transform;
 
 /// What stands behind the face. All ranks call each method together; the compliance is on rank 0.
-pub trait Response {
+pub trait Response<const D: usize> {
     /// Makes the rest hold for a step of this length from the accepted state.
     fn prepare(&mut self, step: Step) -> Result<()>;
     /// `free` = u_free, m.
@@ -34,7 +35,7 @@ pub trait Response {
     /// c
     fn secant(&self) -> f64;
     /// C, on rank 0.
-    fn compliance(&self) -> Option<&Compliance>;
+    fn compliance(&self) -> Option<&Compliance<D>>;
     /// What the body did: its memory, and its solves.
     fn work(&self) -> Work;
     /// Keeps account of the energy from here on, at rest; `layout` is that of the face.

@@ -23,20 +23,20 @@ use crate::petsc::{Gather, Step, Vector};
 use crate::snapshot::{NaturalOrder, Snapshot};
 
 /// The body with its memory, whole on one rank.
-pub trait Inside {
+pub trait Inside<const D: usize> {
     /// Makes u_free and C hold for a step of this length from the accepted state.
     fn prepare(&mut self, step: Step) -> Result<()>;
-    /// u_free of x, z of each face node, m.
+    /// u_free of each face node, m.
     fn face(&self) -> &[f64];
     /// C; none before the first step was prepared.
-    fn compliance(&self) -> Option<&Compliance>;
+    fn compliance(&self) -> Option<&Compliance<D>>;
     /// What it did: its memory, and its solves.
     fn work(&self) -> Work;
     /// Keeps account of the energy from here on, at rest.
     fn keep_account(&mut self);
     /// The energy at the accepted state, where it is kept account of.
     fn energy(&self) -> Option<BodyEnergy>;
-    /// Takes the body to the end of the step that was prepared, under the contact forces `forces`, x, z of each face node, N/m.
+    /// Takes the body to the end of the step that was prepared, under the contact forces `forces` on the face nodes, N/m.
     fn commit(&mut self, step: Step, forces: &[f64]) -> Result<()>;
     /// Adds the accepted state to a snapshot.
     fn save(&self, snapshot: &mut Snapshot) -> Result<()>;
@@ -79,24 +79,24 @@ impl<T> Solvers<T> {
 }
 
 /// A body with an interior memory.
-pub struct Remembering {
+pub struct Remembering<const D: usize> {
     comm: SimpleCommunicator,
     /// On rank 0.
-    inside: Option<Box<dyn Inside>>,
+    inside: Option<Box<dyn Inside<D>>>,
     /// Length of the step that was prepared, s.
     prepared: Option<f64>,
     /// On all ranks; only where it is asked for.
     energy: Option<BodyEnergy>,
 }
 
-impl Remembering {
+impl<const D: usize> Remembering<D> {
     /// At rest; `inside` is on rank 0 of `comm`.
-    pub fn new(comm: &SimpleCommunicator, inside: Option<Box<dyn Inside>>) -> Self {
+    pub fn new(comm: &SimpleCommunicator, inside: Option<Box<dyn Inside<D>>>) -> Self {
         Self { comm: comm.duplicate(), inside, prepared: None, energy: None }
     }
 }
 
-impl Response for Remembering {
+impl<const D: usize> Response<D> for Remembering<D> {
     fn prepare(&mut self, step: Step) -> Result<()> {
         if self.prepared == Some(step.dt) {
             return Ok(());
@@ -119,7 +119,7 @@ impl Response for Remembering {
         1.0
     }
 
-    fn compliance(&self) -> Option<&Compliance> {
+    fn compliance(&self) -> Option<&Compliance<D>> {
         self.inside.as_ref().and_then(|inside| inside.compliance())
     }
 
@@ -166,7 +166,7 @@ impl Response for Remembering {
     }
 }
 
-impl Remembering {
+impl<const D: usize> Remembering<D> {
     /// Gives every rank the energy of the body. Collective.
     fn share_energy(&mut self) {
         let Some(energy) = &mut self.energy else { return };

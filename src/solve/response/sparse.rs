@@ -11,16 +11,16 @@ use crate::petsc::{Cholesky, Matrix, Step, Vector};
 use crate::snapshot::Snapshot;
 
 /// The whole body, on the one rank that solves it.
-pub struct Sparse {
+pub struct Sparse<const D: usize> {
     bulk: Bulk,
-    body: Body,
+    body: Body<D>,
     /// First row of each face node.
     rows: Vec<usize>,
     kept: Vec<i32>,
     tangent: Matrix,
     /// The accepted displacements, m.
     u: Vector,
-    solvers: Solvers<Solver>,
+    solvers: Solvers<Solver<D>>,
     load: Vector,
     free: Vector,
     /// u_free, per component of the face.
@@ -31,17 +31,17 @@ pub struct Sparse {
 }
 
 /// A at one step length.
-struct Solver {
+struct Solver<const D: usize> {
     factor: Cholesky,
-    compliance: Compliance,
+    compliance: Compliance<D>,
 }
 
-impl Sparse {
+impl<const D: usize> Sparse<D> {
     /// At rest; both made for this rank alone.
-    pub fn new(bulk: Bulk, body: Body) -> Result<Self> {
+    pub fn new(bulk: Bulk, body: Body<D>) -> Result<Self> {
         let (mesh, numbering) = (body.mesh(), body.numbering());
         let rows: Vec<usize> =
-            mesh.face.unknown.iter().map(|&unknown| 2 * numbering.global[unknown as usize] as usize).collect();
+            mesh.face.unknown.iter().map(|&unknown| D * numbering.global[unknown as usize] as usize).collect();
         let kept = Compliance::free_rows(&body).into_iter().map(|(_, row)| row).collect();
         let mut tangent = bulk.new_tangent()?;
         tangent.declare_positive_definite()?;
@@ -53,7 +53,7 @@ impl Sparse {
             zero: vector()?,
             work: vector()?,
             done: Work::default(),
-            face: vec![0.0; 2 * rows.len()],
+            face: vec![0.0; D * rows.len()],
             solvers: Solvers::new(),
             bulk,
             rows,
@@ -64,7 +64,7 @@ impl Sparse {
     }
 }
 
-impl Inside for Sparse {
+impl<const D: usize> Inside<D> for Sparse<D> {
     fn prepare(&mut self, step: Step) -> Result<()> {
         let Self { solvers, bulk, tangent, kept, body, done, .. } = self;
         solvers.select(step.dt, || {
@@ -81,8 +81,8 @@ impl Inside for Sparse {
         self.solvers.current().ok_or_else(unprepared)?.factor.solve(&self.load, &mut self.free)?;
         self.done.solves += 1;
         let values = self.free.view()?;
-        for (pair, &row) in self.face.chunks_exact_mut(2).zip(&self.rows) {
-            pair.copy_from_slice(&values[row..row + 2]);
+        for (node, &row) in self.face.chunks_exact_mut(D).zip(&self.rows) {
+            node.copy_from_slice(&values[row..][..D]);
         }
         Ok(())
     }
@@ -91,7 +91,7 @@ impl Inside for Sparse {
         &self.face
     }
 
-    fn compliance(&self) -> Option<&Compliance> {
+    fn compliance(&self) -> Option<&Compliance<D>> {
         self.solvers.current().map(|solver| &solver.compliance)
     }
 
@@ -110,9 +110,8 @@ impl Inside for Sparse {
     /// u = A^-1 (b + P f), and the arms with it.
     fn commit(&mut self, step: Step, forces: &[f64]) -> Result<()> {
         let mut load = self.load.view_mut()?;
-        for ([x, z], &row) in forces.as_chunks().0.iter().zip(&self.rows) {
-            load[row] += x;
-            load[row + 1] += z;
+        for (force, &row) in forces.chunks_exact(D).zip(&self.rows) {
+            load[row..].iter_mut().zip(force).for_each(|(load, force)| *load += force);
         }
         drop(load);
         self.solvers.current().ok_or_else(unprepared)?.factor.solve(&self.load, &mut self.u)?;

@@ -1,6 +1,6 @@
 //! The body behind the points of the contact, and the points in a step.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{SMatrix, SVector};
 
 use super::super::accepted::AcceptedFace;
 use super::super::response::Compliance;
@@ -12,25 +12,24 @@ use crate::loading::Placement;
 
 /// A compliance over its secant, m per N/m, before the points of a face.
 #[derive(Clone, Copy)]
-pub struct Behind<'a> {
+pub struct Behind<'a, const D: usize> {
     /// The points.
-    pub interface: &'a Interface,
+    pub interface: &'a Interface<D>,
     /// C
-    pub compliance: &'a Compliance,
+    pub compliance: &'a Compliance<D>,
     /// c
     pub secant: f64,
 }
 
-impl Behind<'_> {
+impl<const D: usize> Behind<'_, D> {
     /// The forces of tractions on the nodes, N/m; what is held takes none.
-    pub fn forces(&self, tractions: &[Vector2<f64>]) -> Vec<f64> {
+    pub fn forces(&self, tractions: &[SVector<f64, D>]) -> Vec<f64> {
         let points = self.interface.points();
         let mut forces = vec![0.0; self.compliance.order()];
         for (i, (point, traction)) in points.all().iter().zip(tractions).enumerate() {
             for &(node, share) in points.shares(i) {
                 let force = traction * (share * point.weight);
-                forces[2 * node] += force.x;
-                forces[2 * node + 1] += force.y;
+                forces[D * node..].iter_mut().zip(&force).for_each(|(to, force)| *to += force);
             }
         }
         forces.iter_mut().enumerate().filter(|(i, _)| self.compliance.is_held(*i)).for_each(|(_, force)| *force = 0.0);
@@ -46,7 +45,7 @@ impl Behind<'_> {
     }
 
     /// The displacements of the nodes under tractions, from what they do without, m, and the forces, N/m.
-    pub fn displaced(&self, tractions: &[Vector2<f64>], free: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
+    pub fn displaced(&self, tractions: &[SVector<f64, D>], free: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         let forces = self.forces(tractions);
         let mut u = self.displacements(&forces)?;
         u.iter_mut().zip(free).for_each(|(u, free)| *u += free);
@@ -54,32 +53,33 @@ impl Behind<'_> {
     }
 
     /// The motion of the points under tractions, m.
-    pub fn moves(&self, tractions: &[Vector2<f64>]) -> Result<Vec<Vector2<f64>>> {
+    pub fn moves(&self, tractions: &[SVector<f64, D>]) -> Result<Vec<SVector<f64, D>>> {
         Ok(self.at_points(&self.displacements(&self.forces(tractions))?))
     }
 
     /// What displacements of the nodes are at the points.
-    pub fn at_points(&self, u: &[f64]) -> Vec<Vector2<f64>> {
+    pub fn at_points(&self, u: &[f64]) -> Vec<SVector<f64, D>> {
         let points = self.interface.points();
         (0..points.count()).map(|i| points.at(i, u)).collect()
     }
 
     /// The motion of the points `rows` under a unit traction at j, m/Pa.
-    pub fn influence(&self, j: usize, rows: &[usize]) -> Vec<Matrix2<f64>> {
+    pub fn influence(&self, j: usize, rows: &[usize]) -> Vec<SMatrix<f64, D, D>> {
         let points = self.interface.points();
         let weight = points.all()[j].weight / self.secant;
         // Of a node, and kept from one point to the next that shares it.
-        let at_node = |a: usize| -> Matrix2<f64> {
+        let at_node = |a: usize| -> SMatrix<f64, D, D> {
             points.shares(j).iter().map(|(b, share)| self.compliance.block(a, *b) * (share * weight)).sum()
         };
-        let mut last: [(usize, Matrix2<f64>); 2] = [(usize::MAX, Matrix2::zeros()); 2];
+        const MOST: usize = 4;
+        let mut last: [(usize, SMatrix<f64, D, D>); MOST] = [(usize::MAX, SMatrix::zeros()); MOST];
         let mut of_point = |&i: &usize| match points.shares(i) {
             [(only, _)] => at_node(*only),
             several => several
                 .iter()
                 .zip(0..)
                 .map(|((a, share), slot): (_, usize)| {
-                    let slot = slot % 2;
+                    let slot = slot % MOST;
                     if last[slot].0 != *a {
                         last[slot] = (*a, at_node(*a));
                     }
@@ -99,7 +99,7 @@ impl Behind<'_> {
         let own = self.influence(i, &[i])[0];
         let stiffest = self.compliance.smallest() * point.weight / self.secant;
         let normal = point.normal.dot(&(own * point.normal));
-        let tangential = own.trace() - normal;
+        let tangential = (own.trace() - normal) / (D - 1) as f64;
         let rho = |own: f64, other: f64| (own > NONE * other).then(|| 1.0 / (own * stiffest).sqrt());
         Moduli {
             // A held point needs no more than its penalty.
@@ -120,14 +120,14 @@ impl Behind<'_> {
 
     /// The points in a step to `placement`, where the profile was placed, from the accepted face; `free` is what the nodes do
     /// without contact, m.
-    pub fn sites(&self, accepted: &AcceptedFace, placement: Placement, free: &[f64]) -> Vec<Site<2>> {
+    pub fn sites(&self, accepted: &AcceptedFace<D>, placement: Placement, free: &[f64]) -> Vec<Site<D>> {
         let interface = self.interface;
-        let Placement { approach, sliding_rate, approach_rate, dt, .. } = placement;
-        let way = Vector2::new(sliding_rate, -approach_rate) * dt;
+        let Placement { approach, dt, .. } = placement;
+        let way = placement.way();
         let falls = self.falls(dt);
-        let site = |(i, point): (usize, &Point<2>)| {
+        let site = |(i, point): (usize, &Point<D>)| {
             let past = interface.points().at(i, accepted.displacement());
-            let elastic = interface.friction().map_or(Vector2::zeros(), |law| interface.states()[i].elastic(law));
+            let elastic = interface.friction().map_or(SVector::zeros(), |law| interface.states()[i].elastic(law));
             let slid = interface.states()[i].slid;
             let vertical = interface.clearance(i, approach);
             let moved = interface.points().at(i, free).norm();
@@ -135,7 +135,7 @@ impl Behind<'_> {
             Site {
                 normal: point.normal,
                 weight: point.weight,
-                clearance: vertical * point.normal.y,
+                clearance: vertical * point.normal[D - 1],
                 drive: way + past + elastic,
                 elastic,
                 slid,

@@ -11,7 +11,7 @@
 //! C grows like the wavelength, so that what the borders of contact and stick take from this costs GMRES a few iterations that
 //! hardly grow with the number of nodes; one iteration costs n log n. Where all slips there is nothing to transform for r.
 
-use nalgebra::Vector2;
+use nalgebra::{SMatrix, SVector};
 
 use super::super::response::{Compliance, Transform};
 use super::linear::Linearised;
@@ -22,67 +22,82 @@ use crate::error::Result;
 const SOFTNESS: f64 = 0.3;
 
 /// M^-1.
-pub struct Fourier {
-    transform: Transform,
-    /// Per wavenumber, for r and for dp.
-    inverses: Vec<[f64; 2]>,
+pub struct Fourier<const D: usize> {
+    transform: Transform<D>,
+    /// Per wave vector, for r and for dp.
+    inverses: Vec<SMatrix<f64, D, D>>,
     sticks: bool,
 }
 
-impl Fourier {
+impl<const D: usize> Fourier<D> {
     /// For the points of a flat face with equal `weight`s, and what their laws are; none where the compliance is not that of a
     /// periodic layer.
-    pub fn new(compliance: &Compliance, secant: f64, points: &[Linearised<2>], weight: f64) -> Option<Self> {
+    pub fn new(compliance: &Compliance<D>, secant: f64, points: &[Linearised<D>], weight: f64) -> Option<Self> {
         let (transform, waves) = compliance.waves()?;
         let per_traction = weight / secant;
         let active: Vec<_> = points.iter().filter(|point| point.active).collect();
         let (soft, stiff) = active.first().map_or((1.0, 0.0), |point| (point.soft, point.stiff));
         let rho = active.iter().map(|point| modulus(point)).fold(0.0, f64::max);
-        let shares = || active.iter().map(|point| (share(point), 1.0 - share(point)));
+        // Along the slip and, in space, across it, where a point that slides is soft too.
+        let slacks = || active.iter().flat_map(|point| point.slack.into_iter().take(D - 1));
+        let shares = || slacks().map(|slack| (share(slack), 1.0 - share(slack)));
         let (give, square) =
             shares().fold((0.0, 0.0), |(give, square), (th, slack)| (give + th * slack, square + th * th));
-        let kappa = if square > 0.0 { SOFTNESS * give / square } else { 0.0 };
-        let inverse = |c: &nalgebra::Matrix2<f64>| {
-            let [along, normally] = [c[(0, 0)], c[(1, 1)]].map(|c| c * per_traction);
-            [1.0 / (rho * along + kappa), 1.0 / (soft + stiff * normally)]
+        let sticks = square > 0.0;
+        let kappa = if sticks { SOFTNESS * give / square } else { 0.0 };
+        let inverse = |c: &SMatrix<f64, D, D>| {
+            let system = SMatrix::from_fn(|i, j| match (i + 1 == D, j + 1 == D) {
+                (true, true) => soft + stiff * per_traction * c[(i, j)],
+                (false, false) if sticks => rho * per_traction * c[(i, j)] + if i == j { kappa } else { 0.0 },
+                _ => f64::from(u8::from(i == j)),
+            });
+            SMatrix::try_inverse(system)
         };
-        Some(Self { transform: transform.clone(), inverses: waves.iter().map(inverse).collect(), sticks: square > 0.0 })
+        let inverses = waves.iter().map(inverse).collect::<Option<_>>()?;
+        Some(Self { transform: transform.clone(), inverses, sticks })
     }
 
     /// dt = M^-1 b
-    pub fn solve(&self, points: &[Linearised<2>], b: &[Vector2<f64>]) -> Result<Vec<Vector2<f64>>> {
+    pub fn solve(&self, points: &[Linearised<D>], b: &[SVector<f64, D>]) -> Result<Vec<SVector<f64, D>>> {
         let combined: Vec<_> = points.iter().zip(b).map(|(point, b)| point.combined(b)).collect();
-        let load = |(point, b): (&Linearised<2>, &Vector2<f64>)| match point.active {
-            true => [if self.sticks { share(point).sqrt() * b.x } else { 0.0 }, b.y],
-            false => [0.0; 2],
-        };
-        let loads: Vec<f64> = points.iter().zip(&combined).flat_map(load).collect();
-        let mut waves = self.transform.forward(&loads)?;
-        for (wave, inverses) in waves.iter_mut().zip(&self.inverses) {
-            for (component, inverse) in inverses.iter().enumerate() {
-                wave.row_mut(component).scale_mut(*inverse);
-            }
+        let mut loads = Vec::with_capacity(D * points.len());
+        for (point, b) in points.iter().zip(&combined) {
+            let load = match point.active {
+                true => self.held(point, point.tangential(b)) + point.normal * point.normal.dot(b),
+                false => SVector::zeros(),
+            };
+            loads.extend(load.iter());
         }
+        let mut waves = self.transform.forward(&loads)?;
+        waves.iter_mut().zip(&self.inverses).for_each(|(wave, inverse)| *wave = inverse * *wave);
         let solved = self.transform.inverse(waves.iter())?;
-        let of = |((point, b), y): ((&Linearised<2>, &Vector2<f64>), &[f64; 2])| {
+        let of = |((point, b), y): ((&Linearised<D>, &SVector<f64, D>), &[f64])| {
             if !point.active {
                 return *b;
             }
-            let [slack, _] = point.slack;
-            let stick = if self.sticks { share(point).sqrt() * y[0] } else { 0.0 };
-            point.dragged(&Vector2::new(slack * b.x + stick, y[1]))
+            let y = SVector::from_column_slice(y);
+            let given = point.scaled(point.slack, point.tangential(b));
+            point.dragged(&(given + self.held(point, point.tangential(&y)) + point.normal * point.normal.dot(&y)))
         };
-        Ok(points.iter().zip(&combined).zip(solved.as_chunks().0).map(of).collect())
+        Ok(points.iter().zip(&combined).zip(solved.chunks_exact(D)).map(of).collect())
+    }
+
+    /// Th^(1/2) v of what is tangential.
+    fn held(&self, point: &Linearised<D>, v: SVector<f64, D>) -> SVector<f64, D> {
+        if !self.sticks {
+            return SVector::zeros();
+        }
+        point.scaled(point.slack.map(|slack| share(slack).sqrt()), v)
     }
 }
 
-/// Th along e; none where friction falls.
-fn share(point: &Linearised<2>) -> f64 {
-    (1.0 - point.slack[0]).max(0.0)
+/// Th; none where friction falls.
+fn share(slack: f64) -> f64 {
+    (1.0 - slack).max(0.0)
 }
 
 /// rho_t
-fn modulus(point: &Linearised<2>) -> f64 {
-    let held = 1.0 - point.slack[0];
-    if held > 0.0 { point.grip[0] / held } else { 0.0 }
+fn modulus<const D: usize>(point: &Linearised<D>) -> f64 {
+    let of = |(grip, slack): (f64, f64)| if slack < 1.0 { grip / (1.0 - slack) } else { 0.0 };
+    point.grip.into_iter().zip(point.slack).take(D - 1).map(of).fold(0.0, f64::max)
 }
