@@ -164,7 +164,11 @@ impl Observer for Recording<'_> {
                 time: report.time,
                 nodes: &fields.nodes,
                 displacement: &fields.displacement.iter().flat_map(|[x, _, z]| [*x, *z]).collect::<Vec<_>>(),
-                stress: &fields.stress.iter().flat_map(|[xx, yy, zz, _, _, xz]| [*xx, *zz, *yy, *xz]).collect::<Vec<_>>(),
+                stress: &fields
+                    .stress
+                    .iter()
+                    .flat_map(|[xx, yy, zz, _, _, xz]| [*xx, *zz, *yy, *xz])
+                    .collect::<Vec<_>>(),
             };
             output::bulk::write(self.world, self.recorder.as_ref(), &frame)?;
         }
