@@ -1,5 +1,6 @@
 //! `mpjr plot`: figures from results, from a sweep's directory, or of materials.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -120,10 +121,12 @@ fn of_materials(arguments: &PlotArguments) -> Result<Vec<Drawing>> {
         std::iter::once(arguments.input.clone()).chain(others.iter().map(PathBuf::from)).collect();
     let materials = files.iter().map(|file| read_material(file)).collect::<Result<Vec<_>>>()?;
     let stem = |file: &PathBuf| file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let solids: Vec<Solid> = match materials.as_slice() {
-        [material] => vec![Solid::of(material, "")],
-        materials => files.iter().zip(materials).map(|(file, material)| Solid::of(material, &stem(file))).collect(),
-    };
+    // Their numbers of arms name them where those differ, else their files do.
+    let mut solids: Vec<Solid> = materials.iter().map(|material| Solid::of(material, "")).collect();
+    let names: HashSet<&str> = solids.iter().map(Solid::label).collect();
+    if names.len() < solids.len() {
+        solids = files.iter().zip(&materials).map(|(file, material)| Solid::of(material, &stem(file))).collect();
+    }
     let sheet = material::sheet(&solids, arguments.fractional.map(|PowerLaw(law)| law));
     Ok(vec![(format!("{}-material", stem(&files[0])), sheet)])
 }

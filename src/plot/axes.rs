@@ -2,12 +2,13 @@
 
 use plotters::prelude::DrawingBackend;
 
+use super::numbers::power;
 use super::painter::{Painter, TICK};
-use super::ticks::{Tick, linear, power, ticks};
+use super::ticks::{Tick, linear, ticks};
 use super::{Axis, Scale};
 
 /// The share of a broken axis that is behind the break, and the width of the break, px.
-const BEYOND: f64 = 0.22;
+const BEYOND: f64 = 0.27;
 const BREAK: f64 = 14.0;
 
 /// An axis with its ends and ticks.

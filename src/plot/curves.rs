@@ -13,7 +13,7 @@ use crate::error::Result;
 const SHADE: Colour = (238, 242, 232);
 /// px a label of a tick.
 const ACROSS: f64 = 52.0;
-const UPWARDS: f64 = 44.0;
+const UPWARDS: f64 = 32.0;
 
 impl<DB: DrawingBackend> Drawn<DB> for Figure {
     fn title(&self) -> &str {

@@ -6,8 +6,9 @@ use super::axes::{Mapping, Ruler, with_power};
 use super::bar::Bar;
 use super::layout::{Drawn, Place, Sides, labels, left_of};
 use super::legend::{Legend, Sample};
+use super::numbers::{decimals, minus};
 use super::painter::{Frame, Painter};
-use super::ticks::{linear, minus};
+use super::ticks::linear;
 use super::{Axis, Colour, Ramp};
 use crate::error::Result;
 
@@ -201,11 +202,7 @@ fn names(levels: &[f64]) -> (Vec<String>, i32) {
     let exponent = linear(&[((low, high), levels.len())]).1;
     let unit = 10f64.powi(exponent);
     let step = (high - low) / (levels.len() - 1) as f64 / unit;
-    let whole = |decimals: &usize| {
-        let digits = step * 10f64.powi(*decimals as i32);
-        (digits - digits.round()).abs() < 1e-6
-    };
-    let decimals = (0..9).find(whole).unwrap_or(3);
+    let decimals = decimals(step);
     // No level is minus nothing.
     let name = |level: &f64| minus(&format!("{:.decimals$}", if *level == 0.0 { 0.0 } else { level / unit }));
     (levels.iter().map(name).collect(), exponent)

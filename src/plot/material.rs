@@ -334,8 +334,11 @@ pub fn sheet(solids: &[Solid], law: Option<Fractional>) -> Sheet {
         let all: Vec<_> = solids.iter().map(|solid| (solid.label.as_str(), &solid.poisson)).collect();
         figures.push(poisson_figure(&all, band));
     }
-    // The band is that of the relaxation times; nothing was measured and no history is known.
-    figures.iter_mut().for_each(|figure| figure.shaded = None);
+    for figure in &mut figures {
+        // The band is that of the relaxation times; nothing was measured and no history is known.
+        figure.shaded = None;
+        figure.curves = merged(std::mem::take(&mut figure.curves));
+    }
     let mut note = Vec::new();
     if let Some(law) = law {
         let Fractional { modulus, order } = law;
@@ -347,4 +350,47 @@ pub fn sheet(solids: &[Solid], law: Option<Fractional>) -> Sheet {
         note.push("E(t) = 2 (1 + ν(0)) G(t)".into());
     }
     Sheet::in_pairs(figures, 400).noting(note.join("; "))
+}
+
+/// Curves that lie on each other, up to round-off, as one, under what their labels have in common.
+fn merged(curves: Vec<Curve>) -> Vec<Curve> {
+    let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * a.abs().max(b.abs());
+    let same = |a: &Curve, b: &Curve| {
+        let mut pairs = a.points.iter().zip(&b.points);
+        a.points.len() == b.points.len() && pairs.all(|(p, q)| near(p.0, q.0) && near(p.1, q.1))
+    };
+    let mut kept: Vec<Curve> = Vec::new();
+    for curve in curves {
+        match kept.iter_mut().find(|other| same(other, &curve)) {
+            Some(other) => other.label = common(&other.label, &curve.label),
+            None => kept.push(curve),
+        }
+    }
+    kept
+}
+
+/// Of `3 arms, constant K` and `3 arms, constant ν` the number of arms; both where they share no part.
+fn common(label: &str, other: &str) -> String {
+    let parts: Vec<&str> = other.split(", ").collect();
+    let shared: Vec<&str> = label.split(", ").filter(|part| parts.contains(part)).collect();
+    if shared.is_empty() { format!("{label} and {other}") } else { shared.join(", ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn curves_on_each_other_are_one_under_what_their_labels_share() {
+        let curve = |label: &str, value: f64| Curve::line(label, vec![(1.0, value), (2.0, value)], REFERENCE);
+        let curves = vec![
+            curve("1 arm, constant K", 1.0),
+            curve("2 arms, constant K", 2.0),
+            curve("1 arm, constant ν", 1.0 + 1e-15),
+            curve("glue", 3.0),
+            curve("felt", 3.0),
+        ];
+        let labels: Vec<String> = merged(curves).into_iter().map(|curve| curve.label).collect();
+        assert_eq!(labels, ["1 arm", "2 arms, constant K", "glue and felt"]);
+    }
 }

@@ -12,6 +12,7 @@ mod layout;
 mod legend;
 mod map;
 pub mod material;
+mod numbers;
 mod painter;
 pub mod results;
 pub mod sweep;

@@ -17,7 +17,6 @@ use self::face::Face;
 pub use self::reactions::Closed;
 use self::unit::Unit;
 use super::Sheet;
-use super::ticks::{minus, power};
 use crate::error::{Error, Result};
 use crate::output::Status;
 use crate::output::reader::{Field, Results};
@@ -242,28 +241,6 @@ impl Run {
     }
 }
 
-/// A number in `digits` significant digits, without trailing zeros; a power of ten where it is long.
-pub(super) fn short(value: f64, digits: i32) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return minus(&value.to_string());
-    }
-    let exponent = value.abs().log10().floor() as i32;
-    if !(-4..6).contains(&exponent) {
-        return format!("{}·{}", short(value / 10f64.powi(exponent), digits), power(exponent));
-    }
-    let decimals = (digits - 1 - exponent).max(0) as usize;
-    let text = minus(&format!("{value:.decimals$}"));
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-}
-
-/// Numbers in as many decimals as tell them apart, and one more.
-pub(super) fn alike(values: &[f64]) -> Vec<String> {
-    let apart = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
-    let least = apart.fold(f64::INFINITY, f64::min);
-    let decimals = if least.is_finite() { (1.0 - least.log10().floor()).clamp(0.0, 9.0) as usize } else { 2 };
-    values.iter().map(|value| minus(&format!("{value:.decimals$}"))).collect()
-}
-
 /// The index of the value nearest to `wanted`.
 fn nearest(values: &[f64], wanted: f64) -> usize {
     let distance = |value: &f64| (value - wanted).abs();
@@ -288,11 +265,6 @@ mod tests {
         assert_eq!(spread(&[5, 6], 4), [5, 6]);
         assert_eq!(spread(&[5, 6, 7], 1), [7]);
         assert!(spread::<u8>(&[], 4).is_empty());
-        assert_eq!(
-            [0.0, 1e-3, 2.154e-3, 10.0, 66.011606, -123456.0, 7.3e10, 1.5e-7].map(|v| short(v, 4)),
-            ["0", "0.001", "0.002154", "10", "66.01", "−123456", "7.3·10¹⁰", "1.5·10⁻⁷"]
-        );
-        assert_eq!(alike(&[0.0, 0.25, 1.0]), ["0.00", "0.25", "1.00"]);
         assert_eq!(nearest(&[0.0, 1.0, 2.0], 1.4), 1);
     }
 }

@@ -1,9 +1,10 @@
 //! The indenter and the face under it.
 
+use super::Run;
 use super::face::Face;
-use super::{Run, short};
 use crate::error::Result;
 use crate::output::reader::Field;
+use crate::plot::numbers::short;
 use crate::plot::{Axis, Curve, Figure, PALETTE, REFERENCE, Sheet, Stroke};
 
 /// At the end of the approach and at the end: the profile where it stands, and the face as it is deformed, around the

@@ -56,8 +56,6 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
     let curve = |label: &str, (time, values): (&[f64], &[f64]), colour: usize| {
         Curve::line(label, time.iter().copied().zip(values.iter().copied()).collect(), PALETTE[colour])
     };
-    let imposed =
-        vec![curve("approach D", (&path.time, &path.approach), 0), curve("sliding s", (&path.time, &path.sliding), 1)];
     let mut normal = vec![curve("computed", (&history.time, &history.normal), 0)];
     let mut tangential = limits(run);
     tangential.push(curve("computed", (&history.time, &history.tangential), 1));
@@ -68,11 +66,18 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
     let figure = |title: &str, label: &str, curves: Vec<Curve>, first: bool| {
         with_phases(run, Figure::new(title, Axis::linear("time t, s"), Axis::linear(label), curves), first)
     };
-    let figures = vec![
-        figure(&format!("Imposed displacements{beyond}"), "D and s, m", imposed, true),
-        figure("Normal force", "N, N/m", normal, false),
-        figure("Tangential force", "Q, N/m", tangential, false),
-    ];
+    let (down, along) =
+        (curve("approach D", (&path.time, &path.approach), 0), curve("sliding s", (&path.time, &path.sliding), 1));
+    let mut figures = if path.is_alike() {
+        vec![figure(&format!("Imposed displacements{beyond}"), "D and s, m", vec![down, along], true)]
+    } else {
+        vec![
+            figure(&format!("Imposed approach{beyond}"), "D, m", vec![down], true),
+            figure(&format!("Imposed sliding{beyond}"), "s, m", vec![along], false),
+        ]
+    };
+    figures.push(figure("Normal force", "N, N/m", normal, false));
+    figures.push(figure("Tangential force", "Q, N/m", tangential, false));
     Ok(Sheet::stacked(figures, 340))
 }
 
@@ -100,6 +105,13 @@ impl Path {
     fn of(run: &Run) -> Self {
         let history = &run.history;
         Self { time: history.time.clone(), approach: history.approach.clone(), sliding: history.sliding.clone() }
+    }
+
+    /// Whether approach and sliding can be read on one axis.
+    fn is_alike(&self) -> bool {
+        let [down, along] =
+            [&self.approach, &self.sliding].map(|all| all.iter().fold(0.0f64, |most, d| most.max(d.abs())));
+        along == 0.0 || down.min(along) > 0.05 * down.max(along)
     }
 
     /// Beyond the mean of the face at a distance on either side of the indenter, at each time with a profile.

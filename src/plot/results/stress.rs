@@ -1,8 +1,9 @@
 //! Stress in the bulk: what Figure 5 of the paper shows.
 
-use super::{Run, Unit, short};
+use super::{Run, Unit};
 use crate::error::{Error, Result};
 use crate::output::reader::Field;
+use crate::plot::numbers::short;
 use crate::plot::{Axis, Colouring, Map, Panel, Ramp, Raster, Sheet};
 
 /// Fields of a map along its longer side.

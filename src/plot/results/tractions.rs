@@ -1,9 +1,10 @@
 //! Tractions along the face: what Figure 6 of the paper shows.
 
 use super::face::Face;
-use super::{Run, Unit, alike, spread};
+use super::{Run, Unit, spread};
 use crate::error::Result;
 use crate::output::reader::Field;
+use crate::plot::numbers::alike;
 use crate::plot::{Axis, Colour, Curve, Figure, Key, Ramp, Sheet, Stroke};
 use crate::scene::Friction;
 

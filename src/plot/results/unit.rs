@@ -1,6 +1,7 @@
 //! What tractions and stresses are divided by.
 
-use super::{Run, short};
+use super::Run;
+use crate::plot::numbers::short;
 use crate::scene::Friction;
 
 /// A modulus, or 1 Pa.

@@ -3,8 +3,7 @@
 use super::table::Table;
 use super::{Case, Model};
 use crate::plot::material::Solid;
-use crate::plot::results::short;
-use crate::plot::ticks::power;
+use crate::plot::numbers::{scientific, short};
 use crate::plot::{Axis, PALETTE};
 use crate::scene::{Material, PoissonRule};
 
@@ -61,19 +60,10 @@ impl Abscissa {
     /// Where a value stands, and what it is called.
     fn place(&self, value: &str) -> (f64, String) {
         match (self.names.iter().position(|name| name == value), number(value)) {
-            (None, Some(number)) if self.decades => (number, scientific(number)),
+            (None, Some(number)) if self.decades => (number, scientific(number, 4)),
             (None, Some(number)) => (number, short(number, 4)),
             (index, _) => (index.unwrap_or_default() as f64 + 1.0, value.to_owned()),
         }
-    }
-}
-
-/// As in 2.154·10⁻³.
-fn scientific(value: f64) -> String {
-    let text = format!("{value:.3e}");
-    match text.split_once('e').map(|(digits, exponent)| (digits, exponent.parse())) {
-        Some((digits, Ok(exponent))) => format!("{digits}·{}", power(exponent)),
-        _ => text,
     }
 }
 
