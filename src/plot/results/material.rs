@@ -8,9 +8,12 @@ use crate::scene::Material;
 
 /// Relaxation, loss and storage modulus, loss tangent, Poisson ratio.
 pub fn sheet(run: &Run) -> Result<Sheet> {
+    let materials = &run.scene.materials;
     let solid = |material: &Material| {
-        let place = material.region.clone().or(material.thickness.map(|thickness| format!("{thickness} m")));
-        Solid::of(material, &place.unwrap_or_default())
+        let stratum = material.thickness.map(|thickness| format!("stratum of {thickness} m"));
+        // The lowest stratum has no thickness of its own; of one material alone there is no place to tell.
+        let rest = (materials.len() > 1).then(|| "stratum below".into());
+        Solid::of(material, &material.region.clone().or(stratum).or(rest).unwrap_or_default())
     };
-    Ok(crate::plot::material::sheet(&run.scene.materials.iter().map(solid).collect::<Vec<_>>(), run.law))
+    Ok(crate::plot::material::sheet(&materials.iter().map(solid).collect::<Vec<_>>(), run.law))
 }
