@@ -23,6 +23,13 @@ pub struct Placement {
     pub force: Option<f64>,
 }
 
+impl Placement {
+    /// Whether the indenter was told not to move in the step.
+    pub fn is_still(&self) -> bool {
+        self.force.is_none() && self.sliding_rate.norm() == 0.0 && self.approach_rate == 0.0
+    }
+}
+
 /// Tangential motion of one phase, relative to where the phase found the indenter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Motion {

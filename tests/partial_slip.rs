@@ -120,3 +120,36 @@ fn regularisations_tell_their_error_during_holds() {
     assert!(sway <= 1e-5 && hold > 10.0 * 1e-6 && rest > hold && rest <= 21.0 * 1e-5, "{sway:e} {hold:e} {rest:e}");
     assert!(q[40] < 0.9 * q[20], "{} {}", q[20], q[40]);
 }
+
+/// Coulomb's law itself during a hold of an elastic body in partial slip, on faces that are solved by LU, by Fourier transforms and on
+/// free sides, without penetration and with a penalty: nothing slips, and N, Q and what sticks are those before it, to the last bit.
+#[test]
+fn what_is_held_rests() {
+    let hold = "phase.back={name=\"hold\",duration=1e4,steps=200}";
+    let law =
+        ["friction={law=\"coulomb\",coefficient=0.3}", "phase.again={name=\"rest\",duration=10.0,steps=10}", hold];
+    for kind in [
+        &["contact.penalty="][..],
+        &["contact.penalty=", "layer.cells=[256,16]"],
+        &["contact.penalty=", "layer.sides=free", "material.poisson_ratio=0.3"],
+        &["layer.cells=[256,16]"],
+    ] {
+        let results = run(&[&law[..], kind, &["phase.forth.velocity=1e-4"]].concat());
+        for column in ["normal_force", "tangential_force", "stick_fraction", "contact_fraction"] {
+            let values = results.history(column).unwrap();
+            assert!(values[22..].iter().all(|value| value.to_bits() == values[22].to_bits()), "{kind:?} {column}");
+        }
+        let sticks = results.history("stick_fraction").unwrap()[22];
+        assert!(sticks > 0.1 && sticks < 0.9, "{kind:?}: {sticks}");
+        assert!(results.history("stuck_slip").unwrap().iter().all(|slip| *slip == 0.0), "{kind:?}");
+        let slips = results.interface("slip_rate").unwrap();
+        let pressures = results.interface("pressure").unwrap();
+        for frame in 22..slips.rows {
+            let touching = slips.row(frame).iter().zip(pressures.row(frame)).filter(|(_, p)| **p > 0.0);
+            assert!(
+                touching.clone().count() > 3 && touching.map(|(slip, _)| slip).all(|slip| *slip == 0.0),
+                "{kind:?}"
+            );
+        }
+    }
+}

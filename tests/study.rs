@@ -80,6 +80,72 @@ fn the_order_of_the_penalty() {
     }
 }
 
+/// Partial slip under Coulomb's law itself without penetration.
+const EXACT: &str = r#"
+[layer]
+width = 1.0
+depth = 0.7
+cells = [64, 16]
+sides = "periodic"
+[material]
+shear_modulus = 300.0
+poisson_ratio = 0.3
+[indenter]
+profile = "harmonic"
+amplitude = 5e-4
+wavelength = 1.0
+[contact]
+[friction]
+law = "coulomb"
+coefficient = 0.3
+[[phase]]
+name = "press"
+duration = 1.0
+steps = 4
+approach = 5e-4
+[[phase]]
+name = "forth"
+duration = 1.0
+steps = 20
+velocity = 1e-4
+[solver]
+tolerance = 1e-11
+"#;
+
+/// Penalty, elastic slip and regularisation come to the exact laws, which the scene has, at first order: each rung is ten times closer than
+/// the one before (the order that is told, from the last two of them). The error of the last one, against the exact laws: 2.0e-4 at
+/// 1e7 Pa/m, 7.4e-5 at 1e-8 m, 4.4e-5 at 1e-8 m/s (measured). The scene as it is has none but round-off, and two quadratures are
+/// not compared, as the other one takes no exact law.
+#[test]
+fn softer_laws_come_to_the_exact_ones() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = directory.path().join("exact.toml");
+    std::fs::write(&scene, EXACT).unwrap();
+    for (vary, bound) in [
+        ("contact.penalty=1e4,1e5,1e6,1e7", 2.2e-4),
+        ("friction.elastic_slip=1e-5,1e-6,1e-7,1e-8", 8e-5),
+        ("friction.regularisation=1e-6,1e-7,1e-8", 5e-5),
+    ] {
+        let told = output_of(&mut study(&scene, 1, &["--vary", vary, "--out", "out"]));
+        let out = directory.path().join("out");
+        let found: Table = std::fs::read_to_string(out.join("study.toml")).unwrap().parse().unwrap();
+        let order = number(found["ladder"][0].as_table().unwrap(), "order");
+        assert!((order - 1.0).abs() < 0.05, "{vary}: {order}");
+        let rows = std::fs::read_to_string(out.join("runs.csv")).unwrap();
+        let error = |row: &str| row.rsplit(',').next().unwrap().parse::<f64>().unwrap();
+        let errors: Vec<f64> = rows.lines().skip(1).map(error).collect();
+        let [.., last, exact] = errors[..] else { panic!("{rows}") };
+        assert!(last < bound && last > 0.5 * bound && exact < 1e-15, "{vary}: {errors:?}");
+        assert!(told.contains("  none  ") && number(&found, "error") < 1e-15, "{told}");
+    }
+    // From a softer scene, the law itself is where its key is taken out.
+    let soft = ["--set", "contact.penalty=1e6", "--vary", "contact.penalty=1e5,1e6,none", "--out", "soft"];
+    let told = output_of(&mut study(&scene, 1, &soft));
+    assert!(told.contains("contact.penalty= contact.tolerance= contact.method=: 24 steps"), "{told}");
+    let told = output_of(&mut study(&scene, 1, &["--out", "default"]));
+    assert!(told.contains("as it is: ") && !told.contains("quadrature"), "{told}");
+}
+
 /// With `--error` nothing is printed but options, which `mpjr run` takes; what no setting meets is refused.
 #[test]
 fn the_cheapest_setting() {

@@ -140,10 +140,11 @@ fn climb(world: &SimpleCommunicator, arguments: &StudyArguments) -> Result<()> {
 }
 
 fn ladders(subject: &Subject, vary: &[String]) -> Result<Vec<Ladder>> {
+    let scene = subject.with(&[])?;
     if vary.is_empty() {
-        return ladder::default(subject, &subject.with(&[])?);
+        return ladder::default(subject, &scene);
     }
-    let ladders = vary.iter().map(|typed| ladder::parse(typed)).collect::<Result<Vec<_>>>()?;
+    let ladders = vary.iter().map(|typed| ladder::parse(typed, &scene)).collect::<Result<Vec<_>>>()?;
     // A value that the scene does not take is known before anything is solved.
     for setting in ladders.iter().flat_map(|ladder| &ladder.rungs) {
         subject.with(&setting.changes)?;

@@ -76,6 +76,11 @@ pub trait Law: std::fmt::Debug + Send + Sync {
         false
     }
 
+    /// Whether a point that does not slip keeps the shear that it has, for as long as that is.
+    fn rests(&self) -> bool {
+        (self.holds() || self.sharpness(1.0) == 0.0) && !self.strength().varies()
+    }
+
     /// How much of the slip m is elastic, m.
     fn elastic(&self, _slip: f64) -> f64 {
         0.0

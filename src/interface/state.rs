@@ -54,6 +54,11 @@ impl<const D: usize> State<D> {
         }
     }
 
+    /// The same after a step in which nothing moved.
+    pub fn at_rest(&self) -> Self {
+        Self { slip: SVector::zeros(), ..*self }
+    }
+
     /// q - p n, Pa.
     pub fn on_layer(&self, normal: &SVector<f64, D>) -> SVector<f64, D> {
         self.shear - normal * self.pressure

@@ -49,6 +49,11 @@ impl Westergaard {
         if share > 0.0 { self.amplitude * share * (1.0 - share.ln()) } else { 0.0 }
     }
 
+    /// The indentation (m) by a flat punch 2a wide in each wavelength under a mean pressure, less that of a uniform pressure.
+    pub fn indentation_of_punch(&self, half_width: f64, mean: f64) -> f64 {
+        -2.0 * self.wavelength / (PI * self.modulus) * (PI * half_width / self.wavelength).sin().ln() * mean
+    }
+
     /// The mean pressure (Pa) at which a summit is `approach` (m) deep in a layer whose compliance to a uniform pressure
     /// is `uniform` (m/Pa); partial contact.
     pub fn mean_at(&self, approach: f64, uniform: f64) -> f64 {
@@ -176,6 +181,12 @@ impl<P: Fn(f64) -> f64> Oscillation<P> {
             self.turns.clear();
         }
         self.on_branch(x)
+    }
+
+    /// The approach (m) at which a contact without friction is as wide as what has stuck since the last turn; below 0 where
+    /// nothing has.
+    pub fn stuck_approach(&self) -> f64 {
+        self.approach - self.origin().map_or(self.now.abs(), |(from, _)| 0.5 * (self.now - from).abs()) / self.friction
     }
 
     fn origin(&self) -> Option<(f64, f64)> {

@@ -8,11 +8,14 @@ use super::keys;
 use super::read::phase;
 use crate::error::{Error, Result};
 
-/// Applies the overrides in order.
+/// Applies the overrides in order; one without a value takes the key out of the scene.
 pub(super) fn apply(table: &mut Table, overrides: &[String], file: &Path) -> Result<()> {
     for typed in overrides {
         let (path, text) = split(typed)?;
-        set(table, path, value(text, typed)?, file)?;
+        match text {
+            "" => take(table, path),
+            _ => set(table, path, value(text, typed)?, file)?,
+        }
     }
     Ok(())
 }
@@ -43,6 +46,26 @@ pub fn set(table: &mut Table, path: &str, value: Value, file: &Path) -> Result<(
         return Err(Error::scene(file, path, "must be keys joined by dots, such as layer.width"));
     }
     put_in_table(table, &keys, 0, value).map_err(|(depth, reason)| Error::scene(file, keys[..depth].join("."), reason))
+}
+
+/// Takes out what stands at `path`, a path as [`set`] takes it, if anything does.
+fn take(table: &mut Table, path: &str) {
+    let keys = split_path(path);
+    let Some((last, before)) = keys.split_last() else { return };
+    let mut table = table;
+    let mut at = before.iter().peekable();
+    while let Some(key) = at.next() {
+        let within = match table.get_mut(key) {
+            Some(Value::Array(array)) => at.next().and_then(|word| {
+                let index = element(array, key, word).ok()?;
+                array.get_mut(index)
+            }),
+            other => other,
+        };
+        let Some(Value::Table(next)) = within else { return };
+        table = next;
+    }
+    table.remove(last);
 }
 
 /// What stands at `path`, a path as [`set`] takes it; none where there is nothing.

@@ -16,6 +16,7 @@ use super::traction::{self, Answer, Behind, Laws, Outcome, Site};
 use super::{BulkFields, Contact, TransientProblem, Work};
 use crate::energy::Energy;
 use crate::error::{Error, Result};
+use crate::friction::Law;
 use crate::interface::{Interface, State};
 use crate::loading::{Phase, Placement};
 use crate::petsc::{Gather, Matrix, Step, Vector, Verdict};
@@ -62,6 +63,9 @@ pub struct Condensed<const D: usize, R> {
 struct Stage<const D: usize> {
     step: Step,
     placement: Placement,
+    /// Whether nothing has to move: under an indenter that does not, the accepted tractions leave all where it was, to the last digit,
+    /// and friction does not creep.
+    still: bool,
     /// On rank 0.
     sites: Vec<Site<D>>,
     /// The last state that was tried.
@@ -123,7 +127,10 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
             Some(behind) => behind.sites(&self.face, placement, &self.free.view()?),
             None => Vec::new(),
         };
-        self.stage = Some(Stage { step, placement, sites, trial, first: None, newton: 0 });
+        let still = placement.is_still()
+            && self.face.interface.friction().is_none_or(Law::rests)
+            && self.displaced(&self.accepted)?.0 == self.face.displacement();
+        self.stage = Some(Stage { step, placement, still, sites, trial, first: None, newton: 0 });
         Ok(())
     }
 
@@ -139,7 +146,8 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         Ok(u.view()?.last().map(|last| (traction::modulus(&stage.sites), *last)))
     }
 
-    /// Within a phase the tractions go on as they did, or along with the indenter where that goes far in a step.
+    /// Within a phase the tractions go on as they did, or along with the indenter where that goes far in a step. A change that the
+    /// tolerance allows says nothing of where they go: going on with it, a contact that rests would not stay as it is.
     fn predict(&self, step: Step, u: &mut Vector) -> Result<()> {
         let Some(last) = self.face.goes_on_from(step)? else { return Ok(()) };
         let points = self.face.interface.points();
@@ -148,7 +156,13 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
             Some(carried) => carried,
             None => {
                 let share = step.dt / last;
-                self.accepted.iter().zip(&self.before).map(|(now, before)| now + (now - before) * share).collect()
+                let changes = self.accepted.iter().zip(&self.before).map(|(now, before)| now - before);
+                let squares =
+                    changes.clone().zip(points.all()).map(|(change, point)| point.weight * change.norm_squared());
+                if squares.sum::<f64>().sqrt() <= self.tolerance * self.scale {
+                    return Ok(());
+                }
+                self.accepted.iter().zip(changes).map(|(now, change)| now + change * share).collect()
             }
         };
         // No tension.
@@ -233,6 +247,27 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         self.comm.process_at_rank(0).broadcast_into(&mut list[..]);
         self.comm.process_at_rank(0).broadcast_into(&mut displacement[..]);
         (list.chunks_exact(State::<D>::NUMBERS).map(State::read).collect(), displacement)
+    }
+
+    /// The tractions at the end of a step, and the points.
+    ///
+    /// Where nothing moved there was nothing for the laws to do, and what is in contact rests, to the last digit: the laws would take
+    /// every digit that round-off puts beyond f p and give none back.
+    fn ends(&self, stage: &Stage<D>, outcome: &Outcome<D>) -> (Vec<SVector<f64, D>>, Vec<State<D>>) {
+        let laws = self.laws(stage);
+        let rests = self.rests(stage, outcome);
+        let met = if rests { outcome.tractions.clone() } else { outcome.met(&stage.sites) };
+        let ends = stage.sites.iter().zip(&outcome.answers).zip(&outcome.motions).zip(self.face.interface.states());
+        let state = |(((site, answer), motion), before): (((&Site<D>, &Answer<D>), _), &State<D>)| match rests {
+            true if answer.active => before.at_rest(),
+            _ => answer.state(site, motion, laws, before),
+        };
+        (met, ends.map(state).collect())
+    }
+
+    /// Whether nothing moves in the step.
+    fn rests(&self, stage: &Stage<D>, outcome: &Outcome<D>) -> bool {
+        stage.still && outcome.tractions == self.accepted
     }
 
     /// Tractions near those that meet the laws, from others.
@@ -329,14 +364,19 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
 
     /// Converged below the tolerance times the tractions (of this or the accepted state, the larger; without any, times the
     /// first norm of the step), or at what round-off leaves. At least one iteration is made unless the first guess is as good as
-    /// round-off.
+    /// round-off, or nothing moves: what the accepted tractions then leave is of the step before, which was allowed it.
     fn test(&mut self, iteration: usize, _norm: f64) -> Verdict {
         let mut verdict = 0;
-        if let Some(Stage { sites, trial, first, .. }) = self.stage.as_ref().filter(|stage| !stage.sites.is_empty()) {
+        if let Some(stage) = self.stage.as_ref().filter(|stage| !stage.sites.is_empty()) {
+            let Stage { sites, trial, first, .. } = stage;
             let norm = trial.norm(sites);
             let scale = self.scale.max(trial.size(sites));
             let reference = if scale > 0.0 { scale } else { first.unwrap_or(norm) };
-            let allowed = if iteration == 0 { 0.0 } else { self.tolerance * reference };
+            let allowed = match iteration {
+                0 if self.rests(stage, trial) => norm,
+                0 => 0.0,
+                _ => self.tolerance * reference,
+            };
             verdict = match norm {
                 norm if !norm.is_finite() => 2,
                 norm if norm <= allowed.max(trial.noise(sites)) => 1,
@@ -363,12 +403,8 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
         self.enter(step)?;
         let outcome = self.outcome(u)?;
         let stage = self.stage.take().ok_or_else(unprepared)?;
-        let met = outcome.met(&stage.sites);
-        let laws = self.laws(&stage);
-        let ends = stage.sites.iter().zip(&outcome.answers).zip(&outcome.motions).zip(self.face.interface.states());
-        let states: Vec<State<D>> =
-            ends.map(|(((site, answer), motion), before)| answer.state(site, motion, laws, before)).collect();
         let placement = self.placed(&stage, outcome.descent)?;
+        let (met, states) = self.ends(&stage, &outcome);
         let (displacement, forces) = self.displaced(&met)?;
         self.scale = outcome.size(&stage.sites);
         write(u, met.iter().copied())?;

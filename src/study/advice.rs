@@ -77,8 +77,8 @@ pub fn advise(
     Ok(targets.iter().map(best).collect())
 }
 
-/// The first of the choices, by cost, that is predicted to meet the target and then does. One that misses it raises what
-/// the prediction of the following ones must leave.
+/// The first of the choices, by cost, that is predicted to meet the target and then does; of those that cost the same, as clocks
+/// go, the most accurate. One that misses it raises what the prediction of the following ones must leave.
 fn cheapest(
     solver: &mut Solver<'_>,
     climbed: &[Climbed],
@@ -87,9 +87,13 @@ fn cheapest(
     target: f64,
 ) -> Result<Option<Advice>> {
     const TRIES: usize = 6;
+    const THE_SAME: f64 = 1.1;
     let mut allowed = target;
     for _ in 0..TRIES {
-        let Some(choice) = choices.iter().find(|choice| choice.error <= allowed) else { return Ok(None) };
+        let mut meeting = choices.iter().filter(|choice| choice.error <= allowed).peekable();
+        let dearest = meeting.peek().map_or(0.0, |first| THE_SAME * first.cost);
+        let as_cheap = meeting.take_while(|choice| choice.cost <= dearest);
+        let Some(choice) = as_cheap.min_by(|a, b| a.error.total_cmp(&b.error)) else { return Ok(None) };
         let changes = changes(climbed, choice.rungs.iter().copied());
         let measured = solver.run(&changes)?.map(|run| {
             let error = Difference::between(&run.history, &reference.history).error() + left;

@@ -10,6 +10,7 @@
 pub mod advice;
 pub mod figure;
 pub mod ladder;
+mod softness;
 
 use std::path::Path;
 use std::time::Instant;
@@ -209,13 +210,19 @@ impl<'a> Solver<'a> {
             [Some(coarse), Some(fine)] => Some(Difference::between(&coarse.history, &fine.history).error()),
             _ => None,
         };
-        let successive: Option<Vec<f64>> = runs.windows(2).map(between).collect();
+        let exact = ladder.exact && runs.last().is_some_and(Option::is_some);
+        // What falls by a constant ratio from rung to rung: what they change, or how far they are from the limit.
+        let successive: Option<Vec<f64>> = match exact {
+            true => differences.iter().rev().skip(1).rev().map(|off| off.map(|off| off.error())).collect(),
+            false => runs.windows(2).map(between).collect(),
+        };
         let order = match (&successive, ladder.ratio) {
             (Some(successive), Some(ratio)) => clean_order(successive, ratio),
             _ => None,
         };
         let last = successive.as_ref().and_then(|successive| successive.last().copied()).unwrap_or(0.0);
         let left = match (order, ladder.ratio) {
+            _ if exact => 0.0,
             (Some(order), Some(ratio)) => last / (ratio.powf(order) - 1.0),
             // What first order would leave after a refinement by two.
             (None, Some(_)) => last,

@@ -42,6 +42,8 @@ pub enum Indenter {
     Wave(f64),
     /// A parabola of the given radius, its apex in the middle of the period.
     Parabola(f64),
+    /// Flat over the given half-width to both sides of the middle of the period, with steep flanks that never touch.
+    Punch(f64),
 }
 
 /// One phase.
@@ -147,6 +149,12 @@ impl Setting {
             }
             Indenter::Parabola(radius) => {
                 format!("profile = \"parabola\"\nradius = {radius:?}\ncentre = {:?}", 0.5 * self.width)
+            }
+            Indenter::Punch(half) => {
+                format!(
+                    "profile = \"expression\"\nformula = \"1e3*max(0, abs(x - {:?}) - {half:?})\"",
+                    0.5 * self.width
+                )
             }
         };
         let element = if self.mean_dilatation { "q4_bbar" } else { "q4" };

@@ -3,11 +3,13 @@
 
 use std::f64::consts::TAU;
 
-use super::setting::{Phase, Setting, one_arm, tanh};
+use super::setting::{Phase, Setting, elastic, one_arm, tanh};
 use super::{Case, Row, resolution};
 use crate::energy::Energy;
 use crate::oracle::PoissonRule;
-use crate::oracle::steady::Load;
+use crate::oracle::steady::{Load, Steady};
+use crate::output::HistoryRow;
+use crate::scene::{Friction, Law};
 use crate::solution::Solution;
 
 /// Tens of the relaxation time of 0.817 s.
@@ -18,6 +20,8 @@ const APPROACH: f64 = 1e-3;
 pub fn cases(quick: bool) -> Vec<Case> {
     use PoissonRule::{ConstantBulkModulus, ConstantRatio};
     let mut list = vec![full_contact(if quick { 64 } else { 128 }, ConstantRatio)];
+    let exact_laws = if quick { vec![0.0, 0.1] } else { vec![0.0, 2.154e-2, 0.1, 1.0, f64::INFINITY] };
+    list.extend(exact_laws.into_iter().map(|velocity| without_penetration(128, velocity)));
     list.push(dissipation(64, ConstantRatio));
     if quick {
         list.push(partial_contact(64, 0.1, ConstantRatio));
@@ -152,6 +156,73 @@ fn partial_contact(n: usize, velocity: f64, rule: PoissonRule) -> Case {
         subjects,
         compare: Box::new(compare),
     }
+}
+
+/// The same without penetration and with Coulomb's law itself: the rigid limit, in which no number is chosen but the mesh. The
+/// means are taken over the steps that pass one spacing.
+///
+/// The hysteretic force is what the two sides of a summit leave of each other, a few parts in 10^4: tests/verification.rs has how
+/// that comes with the mesh.
+fn without_penetration(n: usize, velocity: f64) -> Case {
+    let (setting, averaged) = rigidly(n, velocity);
+    let subjects = vec![setting.clone().into()];
+    let compare = move |solutions: &[Solution]| {
+        let solid = one_arm(0.3, PoissonRule::ConstantRatio);
+        let (wave, exact) = (setting.wave(), Setting { solid, ..setting.clone() }.steady(velocity));
+        let Steady { normal, hysteretic, .. } = exact.solve(512, |x| wave.at(x), Load::Approach(APPROACH))?;
+        let history = &solutions[0].history;
+        let mean = |force: fn(&HistoryRow) -> f64| {
+            history.iter().rev().take(averaged).map(force).sum::<f64>() / averaged as f64
+        };
+        let found = [mean(|row| row.normal_force), mean(|row| row.hysteretic_force)];
+        let deepest = history.iter().map(|row| row.max_penetration).fold(0.0, f64::max);
+        Ok(vec![
+            Row::relative("N_z, N/m", [found[0], normal], 2e-4, CELLS_OF_128),
+            Row::relative(
+                "hysteretic force/N_z, 1e-4",
+                [1e4 * found[1] / found[0], 1e4 * hysteretic / normal],
+                2e-3,
+                CELLS_OF_128,
+            ),
+            Row::new("penetration, m", [deepest, 0.0], 0.0, "none at all"),
+        ])
+    };
+    Case {
+        name: format!("steady sliding without penetration, v = {velocity} m/s, {n} x {n}"),
+        source: "complementarity in Fourier space, 512 nodes",
+        subjects,
+        compare: Box::new(compare),
+    }
+}
+
+const CELLS_OF_128: &str = "mesh: 128 cells, 4 times as fine at the face";
+
+/// The setting, and over how many of its last steps the steady state is averaged. At no velocity the layer is the relaxed one.
+///
+/// At an infinite one, what moves with the indenter is not felt by the arms, only its mean is: so it jumps from step to
+/// step by a share of the wave next to the golden section, which leaves no place out, at last in steps too short for anything to relax, as many as
+/// there are nodes.
+fn rigidly(n: usize, velocity: f64) -> (Setting, usize) {
+    let rule = PoissonRule::ConstantRatio;
+    let cell = 1.0 / n as f64;
+    let mut setting = Setting {
+        grading: 4.0,
+        penalty: None,
+        friction: Some(Friction::constant(Law::Coulomb, 0.2)),
+        ..slid(n, if velocity.is_finite() && velocity > 0.0 { velocity } else { 1.0 }, rule, APPROACH)
+    };
+    let passed = |speed: f64, spacings: f64, steps: usize| Phase::slide(speed, spacings * cell, steps, APPROACH);
+    if velocity == 0.0 {
+        setting.solid = elastic(setting.solid.shear * setting.solid.long_term(), setting.solid.poisson);
+        setting.phases[1] = passed(1.0, n as f64, n);
+    } else if velocity.is_infinite() {
+        // Odd, and so without a factor in common with a power of two.
+        let jump = 2.0 * (0.309 * n as f64).floor() + 1.0;
+        let phase = |dt: f64, steps: usize| passed(jump * cell / dt, jump * steps as f64, steps);
+        setting.phases = vec![setting.phases[0], phase(1e-2, (SETTLED / 1e-2) as usize), phase(1e-6, n)];
+        return (setting, n);
+    }
+    (setting, 1)
 }
 
 fn said(rule: PoissonRule) -> &'static str {
