@@ -4,6 +4,7 @@ mod body;
 mod estimate;
 mod inputs;
 mod profile;
+mod surface;
 
 use std::any::Any;
 use std::cell::RefCell;
@@ -33,7 +34,7 @@ use crate::solve::{
 };
 
 use body::Materials;
-pub use body::{Outline, Stretch, outline};
+pub use body::{Meshed, Outline, Stretch, outline};
 pub use estimate::Estimate;
 pub use inputs::inputs;
 pub use profile::{Finest, PressedEnd, Shape, elevations, measured, numbers, reach, seam_doubt, shape};
@@ -51,7 +52,7 @@ pub struct Problem {
     /// TS and SNES, ready to solve it.
     pub integrator: Integrator,
     /// The body's mesh, for output.
-    pub mesh: Source<2>,
+    pub mesh: Meshed,
 }
 
 /// The last elastic compliance on this rank, for the next scene with the same mesh and moduli: in a sweep it is
@@ -84,7 +85,7 @@ impl Compliances {
 /// The body and the indenter of a scene, read and checked: all that it may be refused for.
 pub struct Parts {
     /// The body's mesh.
-    pub mesh: Source<2>,
+    pub mesh: Meshed,
     /// The indenter's profile.
     pub shape: Shape,
 }
@@ -101,36 +102,40 @@ pub fn prepare(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<
     if scene.layer().is_none() {
         estimate::fits(comm, scene, file, &Outline::of(scene, &mesh))?;
     }
-    let shape = shape(scene, file, &elevations, Stretch::of(scene, &mesh))?;
+    let shape = shape(scene, file, &elevations, &Outline::of(scene, &mesh))?;
     Ok(Parts { mesh, shape })
 }
 
 /// As [`prepare`], with the bytes of the .msh file that the scene names, on every rank, instead of the file.
 pub fn prepare_on_mesh(scene: &Scene, bytes: &[u8]) -> Result<Parts> {
     let mesh = body::mesh_of(bytes, scene)?;
-    let shape = shape(scene, Path::new(""), &[], Stretch::of(scene, &mesh))?;
+    let shape = shape(scene, Path::new(""), &[], &Outline::of(scene, &mesh))?;
     Ok(Parts { mesh, shape })
 }
 
 /// Builds what `scene`, which was read from `file`, asks for, distributed over `comm`.
 pub fn build(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Problem> {
     let Parts { mesh, shape } = prepare(comm, scene, file)?;
-    assemble(comm, scene, (mesh, shape.profile), &Compliances::default())
+    assemble(comm, scene, (mesh, shape.surface), &Compliances::default())
 }
 
 /// As [`build`], with another profile than the scene's.
 pub fn build_with_profile(comm: &SimpleCommunicator, scene: &Scene, profile: Box<dyn Profile>) -> Result<Problem> {
-    assemble(comm, scene, (body::mesh(comm, scene, Path::new(""))?, profile), &Compliances::default())
+    let surface = Rc::new(Extruded(profile));
+    assemble(comm, scene, (body::mesh(comm, scene, Path::new(""))?, surface), &Compliances::default())
 }
 
 /// Makes a problem of the scene's mesh and profile, with what scenes before this one had computed.
 pub fn assemble(
     comm: &SimpleCommunicator,
     scene: &Scene,
-    (mesh, profile): (Source<2>, Box<dyn Profile>),
+    (mesh, surface): (Meshed, Rc<dyn Surface>),
     compliances: &Compliances,
 ) -> Result<Problem> {
-    let (strategy, phases) = assembled(comm, scene, (mesh.clone(), Box::new(Extruded(profile))), compliances)?;
+    let (strategy, phases) = match mesh.clone() {
+        Meshed::Plane(source) => assembled(comm, scene, (source, surface), compliances)?,
+        Meshed::Space(source) => assembled(comm, scene, (source, surface), compliances)?,
+    };
     let Strategy { strategy, tangent, u, integrator } = strategy;
     Ok(Problem { strategy, tangent, u, phases, integrator, mesh })
 }
@@ -147,12 +152,12 @@ struct Strategy {
 fn assembled<const D: usize>(
     comm: &SimpleCommunicator,
     scene: &Scene,
-    (source, profile): (Source<D>, Box<dyn Surface>),
+    (source, surface): (Source<D>, Rc<dyn Surface>),
     compliances: &Compliances,
 ) -> Result<(Strategy, Vec<Phase>)> {
     let materials = Materials::new(scene);
     let friction = scene.friction.as_ref().map(friction).transpose()?;
-    let laws = Laws { profile, penalty: body::penalty(scene, &source), friction };
+    let laws = Laws { profile: Box::new(surface), penalty: body::penalty(scene, &source), friction };
     let mut interface = Interface::new(source.face(), laws, quadrature(scene.contact.quadrature));
     let phases = phases(scene, clearance(scene, &mut interface)?);
     let solid = Solid { source, dilatation: body::dilatation(scene), regions: materials.regions.clone() };
@@ -250,7 +255,7 @@ fn condensed<const D: usize, R: Response<D> + 'static>(
     (u, height): (Vector, f64),
     (interface, response): (Interface<D>, R),
 ) -> Result<Strategy> {
-    let periodic = scene.layer().is_some_and(|layer| layer.sides == scene::Sides::Periodic);
+    let periodic = scene.layer().is_some_and(scene::Layer::is_periodic);
     let components = D * interface.face().count();
     let linear = match components > if periodic { LARGE_PERIODIC_FACE } else { LARGE_FACE } {
         // Where a product costs next to nothing, Newton's method need not wait for exact steps.
@@ -344,9 +349,9 @@ pub fn course(scene: &Scene) -> Vec<Phase> {
         held = force.map(|[_, force]| force);
         let to = phase.approach.unwrap_or(approach);
         let motion = match phase.motion {
-            scene::Motion::Velocity(v) => Motion::Velocity(Vector2::new(v, 0.0)),
-            scene::Motion::Tangential { amplitude, cycles } => {
-                Motion::Sinusoid { amplitude: Vector2::new(amplitude, 0.0), cycles, phase: Vector2::zeros() }
+            scene::Motion::Velocity(velocity) => Motion::Velocity(velocity),
+            scene::Motion::Tangential { amplitude, cycles, phase } => {
+                Motion::Sinusoid { amplitude, cycles, phase: phase.map(f64::to_radians) }
             }
         };
         let phase = Phase {

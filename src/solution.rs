@@ -45,7 +45,7 @@ pub fn solve_on_mesh(comm: &SimpleCommunicator, scene: &Scene, mesh: &[u8]) -> R
 
 fn solve_parts(comm: &SimpleCommunicator, scene: &Scene, Parts { mesh, shape }: Parts) -> Result<Solution> {
     let doubts = Doubts::of(scene, &Outline::of(scene, &mesh), &shape);
-    let problem = composition::assemble(comm, scene, (mesh, shape.profile), &Compliances::default())?;
+    let problem = composition::assemble(comm, scene, (mesh, shape.surface), &Compliances::default())?;
     let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, mesh } = problem;
     let mut collected = Collected { history: vec![HistoryRow::default()], ends: Vec::new(), bulk: Vec::new() };
     let mut driver = Driver::new(strategy.as_mut(), &mut collected, &phases);

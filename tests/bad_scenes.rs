@@ -17,7 +17,7 @@ fn each_bad_scene_gives_its_message() {
         let checked = read(&scene.text, &source).and_then(|read| {
             let elevations = composition::elevations(&read, &scene.file)?;
             let outline = composition::outline(&read, &scene.file)?;
-            composition::shape(&read, &scene.file, &elevations, outline.face).map(|_| ())
+            composition::shape(&read, &scene.file, &elevations, &outline).map(|_| ())
         });
         let (message, exit) = match checked {
             Ok(_) => ("(accepted)".to_owned(), 0),

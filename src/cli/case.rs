@@ -11,10 +11,9 @@ use super::origin::{Begun, Origin};
 use super::progress::Progress;
 use super::record::{Checkpoints, Recording};
 use super::summary::Outcome;
-use crate::composition::{self, Compliances, Outline, Problem};
+use crate::composition::{self, Compliances, Meshed, Outline, Problem};
 use crate::error::{Error, Result};
 use crate::loading::Phase;
-use crate::mesh::Source;
 use crate::output::{BulkPlan, HistoryRow, Metadata, Plan, Recorder, Status, checkpoint, clock, reader::Results};
 use crate::parallel::agree;
 use crate::petsc::Session;
@@ -68,7 +67,7 @@ pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<
     // First what the scene may be refused for.
     let parts = composition::prepare(comm, scene, job.file)?;
     let doubts = (comm.rank() == 0).then(|| Doubts::of(scene, &Outline::of(scene, &parts.mesh), &parts.shape));
-    let problem = composition::assemble(comm, scene, (parts.mesh, parts.shape.profile), job.compliances)?;
+    let problem = composition::assemble(comm, scene, (parts.mesh, parts.shape.surface), job.compliances)?;
     let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, mesh } = problem;
     let begun = job.origin.load(comm, job.out, &phases)?;
     if let Some(begun) = &begun {
@@ -134,7 +133,7 @@ pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<
 fn open(
     job: &Job<'_>,
     started: SystemTime,
-    (mesh, doubts): (&Source<2>, &Doubts),
+    (mesh, doubts): (&Meshed, &Doubts),
     phases: &[Phase],
     begun: Option<&Begun>,
 ) -> Result<Recorder> {
@@ -163,7 +162,7 @@ fn open(
     Ok(recorder)
 }
 
-fn plan(scene: &Scene, mesh: &Source<2>, phases: &[Phase]) -> Plan {
+fn plan(scene: &Scene, mesh: &Meshed, phases: &[Phase]) -> Plan {
     let frames = phases.iter().flat_map(|phase| &phase.steps).filter(|target| target.bulk_output).count();
     let steps = scene.steps() + frames;
     let ends = phases.len();
@@ -179,7 +178,7 @@ fn plan(scene: &Scene, mesh: &Source<2>, phases: &[Phase]) -> Plan {
 }
 
 /// The bulk fields to expect; none when the scene asks for none.
-fn bulk_plan(scene: &Scene, mesh: &Source<2>, phases: &[Phase]) -> Option<BulkPlan> {
+fn bulk_plan(scene: &Scene, mesh: &Meshed, phases: &[Phase]) -> Option<BulkPlan> {
     if scene.output.bulk_at.is_empty() {
         return None;
     }

@@ -36,7 +36,7 @@ pub fn run(arguments: &CheckArguments) -> Result<()> {
     let measured = composition::measured(&scene, file)?;
     let elevations = measured.as_ref().map_or_else(Vec::new, composition::numbers);
     let outline = composition::outline(&scene, file)?;
-    let shape = composition::shape(&scene, file, &elevations, outline.face)?;
+    let shape = composition::shape(&scene, file, &elevations, &outline)?;
     tell(scene.to_toml().trim_end());
     tell(format_args!("\n{}", commented(&profile::describe(&scene, measured.as_ref(), &shape, outline.face))));
     tell(commented(&summary::plan(&scene, &outline)));

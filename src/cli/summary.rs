@@ -122,13 +122,17 @@ pub fn plan(scene: &Scene, outline: &Outline) -> String {
 /// The mesh in words.
 fn extent(scene: &Scene, outline: &Outline) -> String {
     if let Some(layer) = scene.layer() {
-        let sides = match layer.sides {
+        let sides = |span: &Span| match span.sides {
             Sides::Periodic => "periodic",
             Sides::Free => "free",
             Sides::Roller => "roller",
             Sides::Fixed => "fixed",
         };
-        return format!("{} x {} cells, {sides} sides", layer.cells[0], layer.cells[1]);
+        let cells = layer.spans.iter().map(|span| span.cells).chain([layer.rows]);
+        let cells = cells.map(|count| count.to_string()).collect::<Vec<_>>().join(" x ");
+        let mut kinds: Vec<&str> = layer.spans.iter().map(sides).collect();
+        kinds.dedup();
+        return format!("{cells} cells, {} sides", kinds.join(" and "));
     }
     let [quadrilaterals, triangles] = outline.cells;
     let Stretch { from, to, edges, .. } = outline.face;

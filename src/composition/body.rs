@@ -20,27 +20,48 @@ use crate::scene::{self, MeshFile, Scene};
 use crate::solve::{Body, Moduli, Region};
 
 /// The mesh of the scene at `file`, on every rank. A .msh file is read by rank 0 only. Collective.
-pub fn mesh(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Source<2>> {
+pub fn mesh(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Meshed> {
     match &scene.body {
-        scene::Body::Layer(layer) => Ok(Source::Layer(layered(layer, scene))),
+        scene::Body::Layer(layer) => Ok(Meshed::of_layer(layered(layer, scene))),
         scene::Body::Mesh(mesh) => {
             use mpi::traits::Communicator;
             let mine = if comm.rank() == 0 { bytes(mesh) } else { Ok(Vec::new()) };
             let mut bytes = agree(comm, mine)?;
             crate::parallel::broadcast(comm, 0, &mut bytes);
-            file_mesh(&bytes, mesh, scene, file).map(Source::Mesh)
+            file_mesh(&bytes, mesh, scene, file).map(Meshed::in_plane)
         }
     }
 }
 
-/// What a scene's body is, as far as it is known without a solver. A layer's mesh is not made for it.
+/// A body's mesh, or what it is had from.
 #[derive(Debug, Clone, PartialEq)]
+pub enum Meshed {
+    /// Of x and z.
+    Plane(Source<2>),
+    /// Of x, y and z.
+    Space(Source<3>),
+}
+
+impl Meshed {
+    fn of_layer(layer: Layer) -> Self {
+        if layer.spans.len() == 1 { Self::Plane(Source::Layer(layer)) } else { Self::Space(Source::Layer(layer)) }
+    }
+
+    fn in_plane(mesh: Mesh<2>) -> Self {
+        Self::Plane(Source::Mesh(mesh))
+    }
+}
+
+/// What a scene's body is, as far as it is known without a solver. A layer's mesh is not made for it.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Outline {
-    /// Its contact face.
+    /// Its contact face, along x.
     pub face: Stretch,
+    /// In space, along y.
+    pub across: Option<Stretch>,
     /// The displacements to be solved for.
     pub unknowns: usize,
-    /// Quadrilaterals and triangles.
+    /// Quadrilaterals (in space hexahedra) and triangles.
     pub cells: [usize; 2],
     /// Of the contact, Pa/m, where the mesh decides it.
     pub penalty: Option<f64>,
@@ -51,8 +72,8 @@ pub struct Outline {
     pub nodes: Vec<[f64; 2]>,
 }
 
-/// The contact face along x.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// The contact face in one direction.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Stretch {
     /// m
     pub from: f64,
@@ -76,18 +97,20 @@ pub fn outline(scene: &Scene, file: &Path) -> Result<Outline> {
 
 impl Outline {
     /// What the scene's body is, whose mesh is `mesh`.
-    pub fn of(scene: &Scene, source: &Source<2>) -> Self {
-        match (scene.layer(), source) {
+    pub fn of(scene: &Scene, meshed: &Meshed) -> Self {
+        match (scene.layer(), meshed) {
             (Some(layer), _) => Self::of_layer(layer),
-            (None, source) => Self::of_mesh(scene, &source.mesh()),
+            (None, Meshed::Plane(source)) => Self::of_mesh(scene, &source.mesh()),
+            (None, Meshed::Space(_)) => Self::default(),
         }
     }
 
     fn of_layer(layer: &scene::Layer) -> Self {
         Self {
-            face: Stretch::of_layer(layer),
+            face: Stretch::of_span(&layer.spans[0]),
+            across: layer.spans.get(1).map(Stretch::of_span),
             unknowns: layer.unknowns(),
-            cells: [layer.cells[0] * layer.cells[1], 0],
+            cells: [layer.cells(), 0],
             penalty: None,
             height: layer.depth,
             nodes: Vec::new(),
@@ -99,6 +122,7 @@ impl Outline {
         let face = &mesh.face;
         Self {
             face: Stretch::of_mesh(mesh),
+            across: None,
             unknowns: mesh.free_components(),
             cells: [mesh.cells.len() - triangles, triangles],
             penalty: mesh_penalty(scene, mesh).filter(|_| scene.contact.stiffness().is_none()),
@@ -109,14 +133,6 @@ impl Outline {
 }
 
 impl Stretch {
-    /// The face of the scene's body.
-    pub fn of(scene: &Scene, source: &Source<2>) -> Self {
-        match (scene.layer(), source) {
-            (Some(layer), _) => Self::of_layer(layer),
-            (None, source) => Self::of_mesh(&source.mesh()),
-        }
-    }
-
     fn of_mesh(mesh: &Mesh<2>) -> Self {
         let face = &mesh.face;
         let (edges, periodic) = (face.facets.len(), false);
@@ -131,10 +147,9 @@ impl Stretch {
         }
     }
 
-    fn of_layer(layer: &scene::Layer) -> Self {
-        let periodic = layer.sides == scene::Sides::Periodic;
-        let clamped = [(layer.sides == scene::Sides::Fixed).then_some(0.0); 2];
-        Self { from: 0.0, to: layer.width, edges: layer.cells[0], periodic, clamped }
+    fn of_span(&scene::Span { width, cells, sides }: &scene::Span) -> Self {
+        let clamped = [(sides == scene::Sides::Fixed).then_some(0.0); 2];
+        Self { from: 0.0, to: width, edges: cells, periodic: sides == scene::Sides::Periodic, clamped }
     }
 
     /// m
@@ -149,10 +164,10 @@ impl Stretch {
 }
 
 /// The mesh of the scene, of a .msh file with these bytes where the scene wants one.
-pub fn mesh_of(bytes: &[u8], scene: &Scene) -> Result<Source<2>> {
+pub fn mesh_of(bytes: &[u8], scene: &Scene) -> Result<Meshed> {
     match &scene.body {
-        scene::Body::Layer(layer) => Ok(Source::Layer(layered(layer, scene))),
-        scene::Body::Mesh(mesh) => file_mesh(bytes, mesh, scene, &mesh.file).map(Source::Mesh),
+        scene::Body::Layer(layer) => Ok(Meshed::of_layer(layered(layer, scene))),
+        scene::Body::Mesh(mesh) => file_mesh(bytes, mesh, scene, &mesh.file).map(Meshed::in_plane),
     }
 }
 
@@ -174,9 +189,9 @@ impl From<scene::Sides> for Sides {
 
 fn layered(layer: &scene::Layer, scene: &Scene) -> Layer {
     Layer {
-        spans: vec![Span { width: layer.width, cells: layer.cells[0], sides: layer.sides.into() }],
+        spans: layer.spans.iter().map(|&scene::Span { width, cells, sides }| Span { width, cells, sides: sides.into() }).collect(),
         depth: layer.depth,
-        rows: layer.cells[1],
+        rows: layer.rows,
         grading: layer.grading,
         strata: scene.materials.iter().filter_map(|material| material.thickness).collect(),
     }
@@ -283,8 +298,8 @@ pub fn dilatation(scene: &Scene) -> Dilatation {
         scene::Body::Mesh(mesh) => mesh.element,
     };
     match element {
-        scene::Element::Quad4 => Dilatation::Pointwise,
-        scene::Element::Quad4Bbar => Dilatation::Mean,
+        scene::Element::Quad4 | scene::Element::Hex8 => Dilatation::Pointwise,
+        scene::Element::Quad4Bbar | scene::Element::Hex8Bbar => Dilatation::Mean,
     }
 }
 

@@ -1,15 +1,16 @@
 //! The indenter's profile: the file it is in, what the face will ask of it, and what it looks like.
 
 use std::path::Path;
+use std::rc::Rc;
 
-use super::{Stretch, course, phases};
+use super::{Outline, Stretch, course, phases, surface};
 use crate::error::{Error, Result};
 use crate::expression::Expression;
 use crate::input;
 use crate::loading::{Phase, Placement};
 use crate::profile::{
-    BLEND, Circle, Formula, Harmonic, Parabola, Point, Profile, Repeated, Rms, Rough, Roughness, Sampled, Survey,
-    Wedge,
+    BLEND, Circle, Extruded, Formula, Harmonic, Parabola, Point, Profile, Repeated, Rms, Rough, Roughness, Sampled, Surface,
+    Survey, Wedge,
     profilometer::{self, Layout, Measured},
 };
 use crate::scene::{self, Detrend, Extend, Indenter, Reading, Scene, Seam};
@@ -17,8 +18,10 @@ use crate::table::Unit;
 
 /// A profile made ready, and what is known of it.
 pub struct Shape {
-    /// The profile.
-    pub profile: Box<dyn Profile>,
+    /// What the points of the contact see of it.
+    pub surface: Rc<dyn Surface>,
+    /// Along x: all of it in the plane, in space where it is lowest.
+    pub profile: Rc<dyn Profile>,
     /// What decides how fine a mesh must be to see all of it.
     pub finest: Option<Finest>,
     /// What the scene does not say: "1024 points, ...".
@@ -98,13 +101,19 @@ pub(super) fn bytes(name: &str, file: &Path) -> Result<Vec<u8>> {
     })
 }
 
-/// The profile of the scene in `file` over its contact face, with the [`elevations`] it needs. Under periodic sides every
-/// profile repeats with the layer's period.
+/// The profile of the scene in `file` over the contact face of its body, with the [`elevations`] it needs. Under periodic sides
+/// every profile repeats with the layer's period.
 ///
 /// # Errors
 /// [`Error::Scene`] when the profile is not known everywhere that the loading history takes the face, or presses on a
 /// clamped end of it where no penetration is to be left.
-pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], face: Stretch) -> Result<Shape> {
+pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], outline: &Outline) -> Result<Shape> {
+    let face = outline.face;
+    if let Some(across) = outline.across
+        && let Some(shape) = surface::shape(scene, file, [face, across])?
+    {
+        return Ok(shape);
+    }
     let repeat = |profile: Box<dyn Profile>, centre: f64| match face.periodic {
         true => Box::new(Repeated { profile, centre, period: face.width() }),
         false => profile,
@@ -119,6 +128,9 @@ pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], face: Stretch) -> R
         Indenter::Parabola { radius, centre } => repeat(Box::new(Parabola { radius, centre }), centre),
         Indenter::Circle { radius, centre } => repeat(Box::new(Circle { radius, centre }), centre),
         Indenter::Wedge { slope, centre } => repeat(Box::new(Wedge { slope, centre }), centre),
+        Indenter::Paraboloid { .. } | Indenter::Sphere { .. } | Indenter::Cone { .. } | Indenter::Waves { .. } => {
+            return Err(wrong("profile", "is for scenes in space".to_owned()));
+        }
         Indenter::Expression { ref formula } => {
             let expression = Expression::parse(formula, &["x"])
                 .map_err(|fault| wrong("formula", format!("{formula:?}, {fault}")))?;
@@ -158,7 +170,9 @@ pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], face: Stretch) -> R
         );
         return Err(Error::scene(file, "contact", reason));
     }
-    Ok(Shape { profile, finest, detail, unit, seam, survey, pressed })
+    let profile: Rc<dyn Profile> = Rc::from(profile);
+    let surface = Rc::new(Extruded(profile.clone()));
+    Ok(Shape { surface, profile, finest, detail, unit, seam, survey, pressed })
 }
 
 /// Where and when the indenter first presses on a clamped end of the face, as far as planned steps can tell.
@@ -189,7 +203,7 @@ fn pressed_end(profile: &dyn Profile, scene: &Scene, face: Stretch) -> Option<Pr
 const POINTS_PER_CELL: usize = 8;
 const MOST_POINTS: usize = 200_000;
 
-fn survey(profile: &dyn Profile, face: Stretch) -> Result<Survey> {
+pub(super) fn survey(profile: &dyn Profile, face: Stretch) -> Result<Survey> {
     let pieces = (POINTS_PER_CELL * face.edges).clamp(512, MOST_POINTS);
     Survey::new(profile, [face.from, face.to], pieces)
 }

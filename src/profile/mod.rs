@@ -5,8 +5,11 @@ pub mod profilometer;
 mod rough;
 mod sampled;
 mod smooth;
+mod solids;
 mod surface;
 mod survey;
+
+use std::rc::Rc;
 
 use crate::error::Result;
 
@@ -14,7 +17,8 @@ pub use expression::Formula;
 pub use rough::{Rms, Rough, Roughness};
 pub use sampled::{BLEND, Point, Sampled, WALL};
 pub use smooth::{Circle, Harmonic, Parabola, Wedge};
-pub use surface::{Extruded, Height, Surface};
+pub use solids::{Cone, Paraboloid, Sphere, Waves};
+pub use surface::{Extruded, Height, RepeatedSurface, Section, Surface, SurfaceFormula};
 pub use survey::Survey;
 
 /// A rigid profile.
@@ -28,6 +32,12 @@ pub trait Profile {
 }
 
 impl Profile for Box<dyn Profile> {
+    fn at(&self, x: f64) -> Result<Elevation> {
+        (**self).at(x)
+    }
+}
+
+impl Profile for Rc<dyn Profile> {
     fn at(&self, x: f64) -> Result<Elevation> {
         (**self).at(x)
     }

@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use super::{
-    Arm, Extend, Indenter, Law, Layer, Material, Memory, Phase, Quadrature, Scene, Sides, Stepping, Strategy, When,
-    keys,
+    Arm, Extend, Indenter, Law, Layer, Material, Memory, Motion, Phase, Quadrature, Scene, Sides, Span, Stepping,
+    Strategy, When, keys,
 };
 use crate::error::{Error, Result};
 
@@ -17,8 +17,9 @@ type Check = std::result::Result<(), (String, String)>;
 pub(super) fn all(scene: &Scene, file: &Path) -> Result<()> {
     let layer = |check: &dyn Fn(&Layer) -> Check| scene.layer().map_or(Ok(()), check);
     materials(&scene.materials)
-        .and_then(|()| layer(&size))
+        .and_then(|()| layer(&|layer| size(layer, scene.solver.strategy)))
         .and_then(|()| layer(&|layer| strata(layer, &scene.materials)))
+        .and_then(|()| in_space(scene))
         .and_then(|()| layer(&|layer| period(layer, &scene.indenter)))
         .and_then(|()| times(&scene.phases))
         .and_then(|()| adaptive(scene))
@@ -74,37 +75,67 @@ fn strata(layer: &Layer, materials: &[Material]) -> Check {
         );
         return fail(&format!("material.{}.thickness", materials.len() - 2), reason);
     }
-    if layer.cells[1] < materials.len() {
+    if layer.rows < materials.len() {
         let reason =
-            format!("{} rows of cells for {} strata; give at least one row for each", layer.cells[1], materials.len());
+            format!("{} rows of cells for {} strata; give at least one row for each", layer.rows, materials.len());
         return fail("layer.cells", reason);
     }
     Ok(())
 }
 
-/// PETSc counts unknowns and matrix entries, about 18 to a row, with 32 bits.
-fn size(layer: &Layer) -> Check {
+/// What has a direction of its own is for space; what is not there yet is refused.
+fn in_space(scene: &Scene) -> Check {
+    const SPACE: &str = "is for scenes in space: give layer.width as an array of two, along x and along y";
+    let space = scene.is_in_space();
+    if scene.indenter.needs_space() && !space {
+        return fail("indenter.profile", SPACE);
+    }
+    if space && matches!(scene.indenter, Indenter::Rough { .. }) {
+        return fail("indenter.profile", "\"rough\" is not there in space yet; give an expression, or a plane scene");
+    }
+    for phase in &scene.phases {
+        let (key, across) = match phase.motion {
+            Motion::Velocity(velocity) => ("velocity", velocity.y),
+            Motion::Tangential { amplitude, .. } => ("tangential.amplitude", amplitude.y),
+        };
+        if across != 0.0 && !space {
+            return fail(&format!("phase.{}.{key}", phase.name), format!("a direction along y {SPACE}"));
+        }
+    }
+    Ok(())
+}
+
+/// PETSc counts unknowns and matrix entries, about 18 to a row, with 32 bits; of a layer that repeats in all directions it sees
+/// the face alone.
+fn size(layer: &Layer, strategy: Strategy) -> Check {
     const MOST: f64 = 1e8;
-    let [along, through] = layer.cells;
-    let unknowns = 2.0 * (along as f64 + 1.0) * (through as f64 + 1.0);
+    let rows = if layer.is_periodic() && strategy != Strategy::Monolithic { 0 } else { layer.rows };
+    let counts: Vec<usize> = layer.spans.iter().map(|span| span.cells).chain([rows]).collect();
+    let unknowns = counts.iter().map(|count| *count as f64 + 1.0).product::<f64>() * counts.len() as f64;
     if unknowns > MOST {
-        let reason =
-            format!("{along} x {through} cells make {unknowns:.2e} unknowns; at most {MOST:e} can be solved for");
+        let counts = counts.iter().map(usize::to_string).collect::<Vec<_>>().join(" x ");
+        let reason = format!("{counts} cells make {unknowns:.2e} unknowns; at most {MOST:e} can be solved for");
         return fail("layer.cells", reason);
     }
-    match layer.sides {
-        Sides::Periodic | Sides::Fixed if along < 2 => {
-            fail("layer.cells", "must have at least 2 cells along the face under periodic or fixed sides, got 1")
-        }
-        _ => Ok(()),
+    match layer.spans.iter().any(|span| matches!(span.sides, Sides::Periodic | Sides::Fixed) && span.cells < 2) {
+        true => fail("layer.cells", "must have at least 2 cells along the face under periodic or fixed sides, got 1"),
+        false => Ok(()),
     }
 }
 
 /// Under periodic sides the profile has the period of the layer. The harmonic, sampled and rough profiles must have it
 /// by themselves (the sampled one as far as the scene says its period); any other is taken from its nearest image.
 fn period(layer: &Layer, indenter: &Indenter) -> Check {
+    let Span { width, sides, .. } = layer.spans[0];
+    if let (Indenter::Waves { wavelength, .. }, Some(across)) = (indenter, layer.spans.get(1)) {
+        for (span, wavelength) in [&layer.spans[0], across].into_iter().zip(wavelength.iter()) {
+            if span.sides == Sides::Periodic {
+                whole_periods(span.width, "wavelengths", *wavelength).or_else(|reason| fail("layer.width", reason))?;
+            }
+        }
+    }
     let (what, period) = match *indenter {
-        _ if layer.sides != Sides::Periodic => return Ok(()),
+        _ if sides != Sides::Periodic => return Ok(()),
         Indenter::Harmonic { wavelength, .. } => ("wavelengths", wavelength),
         Indenter::Rough { period, .. } => ("periods of the profile", period),
         Indenter::Sampled { period: Some(period), .. } => ("periods of the profile", period),
@@ -113,7 +144,7 @@ fn period(layer: &Layer, indenter: &Indenter) -> Check {
         }
         _ => return Ok(()),
     };
-    whole_periods(layer.width, what, period).or_else(|reason| fail("layer.width", reason))
+    whole_periods(width, what, period).or_else(|reason| fail("layer.width", reason))
 }
 
 /// Whether a periodic layer `width` m wide holds a whole number of `period`s, m, which messages call `what`.
@@ -226,8 +257,9 @@ fn approach(phase: &Phase, scene: &Scene) -> Check {
         return fail(&key, format!("must be less than the depth of the layer ({depth:?} m), got {approach:?}"));
     }
     match scene.indenter {
-        Indenter::Circle { radius, .. } if approach >= radius => {
-            fail(&key, format!("must be less than the radius of the circle ({radius:?} m), got {approach:?}"))
+        Indenter::Circle { radius, .. } | Indenter::Sphere { radius, .. } if approach >= radius => {
+            let what = if scene.indenter.needs_space() { "sphere" } else { "circle" };
+            fail(&key, format!("must be less than the radius of the {what} ({radius:?} m), got {approach:?}"))
         }
         _ => Ok(()),
     }

@@ -1,6 +1,9 @@
 //! The indenter of a scene.
 
+use nalgebra::Vector2;
 use serde::Serialize;
+
+use super::resolved::{one_or_both, pair};
 
 use crate::table::Choice;
 
@@ -36,7 +39,41 @@ pub enum Indenter {
         /// m
         centre: f64,
     },
-    /// h = the value of a formula of x, m. Not looked into here.
+    /// In space: h = (x - xc)^2/(2 Rx) + (y - yc)^2/(2 Ry); radii > 0.
+    Paraboloid {
+        /// m
+        #[serde(serialize_with = "one_or_both")]
+        radius: Vector2<f64>,
+        /// m
+        #[serde(serialize_with = "pair")]
+        centre: Vector2<f64>,
+    },
+    /// In space: the exact lower half of a sphere; radius > 0.
+    Sphere {
+        /// m
+        radius: f64,
+        /// m
+        #[serde(serialize_with = "pair")]
+        centre: Vector2<f64>,
+    },
+    /// In space: h = slope r; slope > 0.
+    Cone {
+        /// -
+        slope: f64,
+        /// m
+        #[serde(serialize_with = "pair")]
+        centre: Vector2<f64>,
+    },
+    /// In space: h = ax (1 - cos(2 pi x / lx)) + ay (1 - cos(2 pi y / ly)); all > 0.
+    Waves {
+        /// m
+        #[serde(serialize_with = "one_or_both")]
+        amplitude: Vector2<f64>,
+        /// m
+        #[serde(serialize_with = "one_or_both")]
+        wavelength: Vector2<f64>,
+    },
+    /// h = the value of a formula of x, and in space of y, m. Not looked into here.
     Expression {
         /// As typed.
         formula: String,
@@ -70,6 +107,13 @@ pub enum Indenter {
         /// The same seed makes the same profile.
         seed: u64,
     },
+}
+
+impl Indenter {
+    /// Whether it is for scenes in space alone.
+    pub fn needs_space(&self) -> bool {
+        matches!(self, Self::Paraboloid { .. } | Self::Sphere { .. } | Self::Cone { .. } | Self::Waves { .. })
+    }
 }
 
 /// From the numbers of a file to the elevation of the indenter's lower surface above its datum, in this order.

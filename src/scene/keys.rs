@@ -4,6 +4,7 @@
 use std::ops::RangeInclusive;
 use std::path::Path;
 
+use nalgebra::Vector2;
 use toml::{Table, Value};
 
 use crate::error::{Error, Result};
@@ -100,6 +101,25 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// One number, or an array of one for x and one for y. Absent is none.
+    pub fn one_or_two(&self, key: &str, quantity: Quantity) -> Result<Option<Vec<f64>>> {
+        let Some(Value::Array(values)) = self.table.get(key) else {
+            return Ok(self.optional_number(key, quantity)?.map(|number| vec![number]));
+        };
+        let what = format!("{}, or an array of two, for x and for y", quantity.what);
+        let accepted = |value: &Value| number(value).filter(|number| number.is_finite() && (quantity.accepts)(*number));
+        match values.iter().map(accepted).collect::<Option<Vec<f64>>>() {
+            Some(numbers) if numbers.len() == 2 => Ok(Some(numbers)),
+            _ => Err(self.error(key, format!("must be {what}"))),
+        }
+    }
+
+    /// A vector along the face: a number is its component along x.
+    pub fn along_the_face(&self, key: &str, quantity: Quantity) -> Result<Option<Vector2<f64>>> {
+        let numbers = self.one_or_two(key, quantity)?;
+        Ok(numbers.map(|numbers| Vector2::new(numbers[0], numbers.get(1).copied().unwrap_or(0.0))))
+    }
+
     /// A whole number that must be there.
     pub fn count(&self, key: &str, what: &str, range: RangeInclusive<usize>) -> Result<usize> {
         self.optional_count(key, what, range)?.ok_or_else(|| self.missing(key, what))
@@ -119,16 +139,14 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Two whole numbers that must be there.
-    pub fn pair(&self, key: &str, what: &str, range: RangeInclusive<usize>) -> Result<[usize; 2]> {
+    /// So many whole numbers, which must be there.
+    pub fn counts(&self, key: &str, what: &str, (many, range): (usize, RangeInclusive<usize>)) -> Result<Vec<usize>> {
         match self.table.get(key) {
             None => Err(self.missing(key, what)),
-            Some(Value::Array(values)) => match values.as_slice() {
-                [first, second] => {
-                    Ok([self.whole(key, first, what, range.clone())?, self.whole(key, second, what, range)?])
-                }
-                _ => Err(self.error(key, format!("must be {what}, got {} values", values.len()))),
-            },
+            Some(Value::Array(values)) if values.len() == many => {
+                values.iter().map(|value| self.whole(key, value, what, range.clone())).collect()
+            }
+            Some(Value::Array(values)) => Err(self.error(key, format!("must be {what}, got {} values", values.len()))),
             Some(value) => Err(self.must_be(key, what, value)),
         }
     }

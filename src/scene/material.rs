@@ -64,9 +64,10 @@ pub(super) fn loading(phases: &[Phase]) -> Option<Loading> {
 fn ramps_of(phase: &Phase, start: f64) -> Vec<Ramp> {
     const MOST: usize = 64;
     match phase.motion {
-        Motion::Velocity(0.0) => Vec::new(),
-        Motion::Velocity(rate) => vec![Ramp { from: start, to: start + phase.duration, rate }],
-        Motion::Tangential { amplitude, cycles } => {
+        Motion::Velocity(velocity) if velocity.norm() == 0.0 => Vec::new(),
+        Motion::Velocity(velocity) => vec![Ramp { from: start, to: start + phase.duration, rate: velocity.norm() }],
+        Motion::Tangential { amplitude, cycles, .. } => {
+            let amplitude = amplitude.norm();
             let quarter = 0.25 * phase.duration / cycles;
             let chord = |k: usize| Ramp {
                 from: start + k as f64 * quarter,

@@ -18,6 +18,7 @@ pub mod sweep;
 
 use std::path::PathBuf;
 
+use nalgebra::Vector2;
 use serde::Serialize;
 
 pub use checks::whole_periods;
@@ -82,7 +83,7 @@ pub struct MeshFile {
     pub element: Element,
 }
 
-/// The element for quadrilaterals.
+/// The element for quadrilaterals, and for hexahedra.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Element {
     /// Bilinear, fully integrated.
@@ -91,23 +92,38 @@ pub enum Element {
     /// The same with mean dilatation, for Poisson ratios near 1/2.
     #[serde(rename = "q4_bbar")]
     Quad4Bbar,
+    /// Trilinear, fully integrated.
+    #[serde(rename = "h8")]
+    Hex8,
+    /// The same with mean dilatation.
+    #[serde(rename = "h8_bbar")]
+    Hex8Bbar,
 }
 
-/// A rectangular layer; the lower face is clamped, the upper one is the contact face.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// A rectangular layer, in space a box; the lower face is clamped, the upper one is the contact face.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Layer {
-    /// Width, m, > 0; one period when `sides` is periodic.
-    pub width: f64,
+    /// Along x and, in space, along y.
+    pub spans: Vec<Span>,
     /// Depth, m, > 0.
     pub depth: f64,
-    /// Cells along the contact face and through the depth, each >= 1 (>= 2 along a periodic face).
-    pub cells: [usize; 2],
+    /// Cells through the depth, >= 1.
+    pub rows: usize,
     /// Height of the lowest cell over that of the top cell, > 0; 1 = uniform.
     pub grading: f64,
-    /// What holds the two sides.
-    pub sides: Sides,
     /// What its cells are.
     pub element: Element,
+}
+
+/// A layer in one direction along its face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// Width, m, > 0; one period when `sides` is periodic.
+    pub width: f64,
+    /// Cells, >= 1 (>= 2 where it is periodic).
+    pub cells: usize,
+    /// What holds the two sides.
+    pub sides: Sides,
 }
 
 /// What holds the sides of a layer.
@@ -118,7 +134,7 @@ pub enum Sides {
     Periodic,
     /// No traction.
     Free,
-    /// No normal (x) displacement.
+    /// No displacement across them.
     Roller,
     /// No displacement.
     Fixed,
@@ -261,15 +277,23 @@ pub enum Stepping {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Motion {
-    /// Constant velocity along +x, m/s; may be 0 or negative.
-    Velocity(f64),
-    /// amplitude sin(2 pi cycles t / duration).
+    /// Constant velocity along x and, in space, y, m/s; may be 0 or negative.
+    Velocity(#[serde(serialize_with = "resolved::number_or_pair")] Vector2<f64>),
+    /// amplitude (sin(2 pi cycles t / duration + phase) - sin(phase)), in each direction by itself.
     Tangential {
         /// m
-        amplitude: f64,
+        #[serde(serialize_with = "resolved::number_or_pair")]
+        amplitude: Vector2<f64>,
         /// > 0; need not be whole
         cycles: f64,
+        /// degrees
+        #[serde(serialize_with = "resolved::number_or_pair", skip_serializing_if = "is_zero")]
+        phase: Vector2<f64>,
     },
+}
+
+fn is_zero(vector: &Vector2<f64>) -> bool {
+    vector.norm() == 0.0
 }
 
 /// How the scene is solved.

@@ -46,7 +46,7 @@ fn compliance_of_layer(layer: &Layer, materials: &[Material], after: f64) -> f64
     let above: f64 = materials.iter().filter_map(|material| material.thickness).sum();
     let thickness = |material: &Material| material.thickness.unwrap_or(layer.depth - above);
     let strata: Vec<_> = materials.iter().map(|material| (thickness(material), material)).collect();
-    smallest_compliance(layer.width / layer.cells[0] as f64, &strata, after)
+    smallest_compliance(layer.cell(), &strata, after)
 }
 
 /// m/Pa, of strata (thickness in m, material) from the face down, in cells of a length, m.

@@ -1,8 +1,10 @@
 //! What a scene says of itself.
 
+use nalgebra::Vector2;
+use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
-use super::{Body, Layer, Material, Phase, Scene, Sides, Stepping, When};
+use super::{Body, Layer, Material, Phase, Scene, Sides, Span, Stepping, When};
 
 impl Scene {
     /// The resolved scene as TOML: every default written out, every duration and modulus in its own key. Reading it
@@ -46,9 +48,14 @@ impl Scene {
         }
     }
 
+    /// Whether it is in space.
+    pub fn is_in_space(&self) -> bool {
+        self.layer().is_some_and(|layer| layer.spans.len() == 2)
+    }
+
     /// The period along x, m, where the sides are one another's images.
     pub fn period(&self) -> Option<f64> {
-        self.layer().filter(|layer| layer.sides == Sides::Periodic).map(|layer| layer.width)
+        self.layer().map(|layer| layer.spans[0]).filter(|span| span.sides == Sides::Periodic).map(|span| span.width)
     }
 
     /// The deepest approach of all phases, m; the tolerances of adaptive steps are relative to it.
@@ -99,18 +106,90 @@ impl Phase {
 }
 
 impl Layer {
-    /// The displacements to be solved for: two to a node, without those that the lower face and the sides hold, and
-    /// with the two sides counted once where they are the same nodes.
+    /// The displacements to be solved for: one for each direction of a node, without those that the lower face and the sides
+    /// hold, and with two sides counted once where they are the same nodes.
     pub fn unknowns(&self) -> usize {
-        let [along, through] = self.cells;
         // The lowest row of nodes is clamped, so that as many rows move as there are cells.
-        let per_row = match self.sides {
-            Sides::Periodic => 2 * along,
-            Sides::Free => 2 * (along + 1),
-            Sides::Roller => 2 * along,
-            Sides::Fixed => 2 * (along - 1),
-        };
-        per_row * through
+        let direction = |held: usize| self.spans.iter().enumerate().map(|(axis, span)| span.free(axis == held)).product::<usize>();
+        (0..=self.spans.len()).map(direction).sum::<usize>() * self.rows
+    }
+
+    /// How many nodes its contact face has.
+    pub fn face_nodes(&self) -> usize {
+        self.spans.iter().map(|span| span.cells + usize::from(span.sides != Sides::Periodic)).product()
+    }
+
+    /// Whether it repeats in all directions of its face.
+    pub fn is_periodic(&self) -> bool {
+        self.spans.iter().all(|span| span.sides == Sides::Periodic)
+    }
+
+    /// How many cells it has.
+    pub fn cells(&self) -> usize {
+        self.spans.iter().map(|span| span.cells).product::<usize>() * self.rows
+    }
+
+    /// The length of the shortest cell along its face, m.
+    pub fn cell(&self) -> f64 {
+        self.spans.iter().map(Span::cell).fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl Span {
+    /// The length of a cell, m.
+    pub fn cell(&self) -> f64 {
+        self.width / self.cells as f64
+    }
+
+    /// Of a row of nodes along it, how many are free to move; `across` its sides, or along them.
+    fn free(&self, across: bool) -> usize {
+        match self.sides {
+            Sides::Periodic => self.cells,
+            Sides::Free => self.cells + 1,
+            Sides::Roller if !across => self.cells + 1,
+            Sides::Roller | Sides::Fixed => self.cells - 1,
+        }
+    }
+}
+
+impl Serialize for Layer {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut table = serializer.serialize_struct("layer", 6)?;
+        let cells: Vec<usize> = self.spans.iter().map(|span| span.cells).chain([self.rows]).collect();
+        match self.spans.as_slice() {
+            [x] => table.serialize_field("width", &x.width)?,
+            several => table.serialize_field("width", &several.iter().map(|span| span.width).collect::<Vec<_>>())?,
+        }
+        table.serialize_field("depth", &self.depth)?;
+        table.serialize_field("cells", &cells)?;
+        table.serialize_field("grading", &self.grading)?;
+        match self.spans.as_slice() {
+            [x, y] if x.sides != y.sides => table.serialize_field("sides", &[x.sides, y.sides])?,
+            all => table.serialize_field("sides", &all[0].sides)?,
+        }
+        table.serialize_field("element", &self.element)?;
+        table.end()
+    }
+}
+
+/// Both components.
+pub(super) fn pair<S: Serializer>(vector: &Vector2<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    [vector.x, vector.y].serialize(serializer)
+}
+
+/// One number where both components are the same, else both.
+pub(super) fn one_or_both<S: Serializer>(vector: &Vector2<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    match vector.x == vector.y {
+        true => vector.x.serialize(serializer),
+        false => [vector.x, vector.y].serialize(serializer),
+    }
+}
+
+/// What is along x alone as a number, else both components.
+pub(super) fn number_or_pair<S: Serializer>(vector: &Vector2<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    match vector.y {
+        0.0 => vector.x.serialize(serializer),
+        _ => [vector.x, vector.y].serialize(serializer),
     }
 }
 

@@ -55,12 +55,14 @@ const HALVINGS: [f64; 4] = [0.25, 0.5, 1.0, 2.0];
 const DECADES: [f64; 3] = [0.1, 1.0, 10.0];
 
 fn cells(scene: &Scene) -> Option<Ladder> {
-    let [along, through] = scene.layer()?.cells;
-    let scaled = |count: usize, factor: f64| (count as f64 * factor).round() as usize;
-    let fits = |factor: &f64| [along, through].iter().all(|&count| (count as f64 * factor).fract() == 0.0);
-    let enough = |factor: &f64| scaled(along, *factor) >= 4 && scaled(through, *factor) >= scene.materials.len().max(2);
+    let layer = scene.layer()?;
+    let counts: Vec<usize> = layer.spans.iter().map(|span| span.cells).chain([layer.rows]).collect();
+    let least: Vec<usize> = layer.spans.iter().map(|_| 4).chain([scene.materials.len().max(2)]).collect();
+    let scaled = |factor: f64| counts.iter().map(move |&count| count as f64 * factor);
+    let fits = |factor: &f64| scaled(*factor).all(|count| count.fract() == 0.0);
+    let enough = |factor: &f64| scaled(*factor).zip(&least).all(|(count, least)| count.round() >= *least as f64);
     let rung = |factor: f64| {
-        let text = format!("[{},{}]", scaled(along, factor), scaled(through, factor));
+        let text = format!("[{}]", scaled(factor).map(|count| format!("{count:.0}")).collect::<Vec<_>>().join(","));
         Setting::new(text.clone(), vec![format!("layer.cells={text}")])
     };
     let rungs = HALVINGS.into_iter().filter(fits).filter(enough).map(rung).collect();

@@ -39,8 +39,8 @@ impl After<'_> {
         rows.filter_map(|rows| {
             let index = rows.first()?.phase;
             let slides = match self.scene.phases.get(index)?.motion {
-                Motion::Velocity(velocity) => velocity != 0.0,
-                Motion::Tangential { amplitude, .. } => amplitude != 0.0,
+                Motion::Velocity(velocity) => velocity.norm() != 0.0,
+                Motion::Tangential { amplitude, .. } => amplitude.norm() != 0.0,
             };
             slides.then_some((index, rows))
         })
@@ -135,8 +135,8 @@ pub fn stuck_slip(after: &After<'_>) -> Option<Warning> {
         let (first, last) = (rows.first()?, rows.last()?);
         let phase = after.scene.phases.get(first.phase)?;
         let slides = match phase.motion {
-            Motion::Velocity(velocity) => (velocity * phase.duration).abs(),
-            Motion::Tangential { amplitude, .. } => 2.0 * amplitude.abs(),
+            Motion::Velocity(velocity) => (velocity * phase.duration).norm(),
+            Motion::Tangential { amplitude, .. } => 2.0 * amplitude.norm(),
         };
         let motion =
             if slides > 0.0 { slides } else { (last.approach - after.touch).min(last.approach - first.approach) };

@@ -6,9 +6,10 @@ use super::material;
 use crate::error::Result;
 use crate::rheology::Loading;
 use crate::scene::keys::{Quantity, Section, label};
-use crate::scene::{Body, Element, Layer, Material, MeshFile, Sides};
+use crate::scene::{Body, Element, Layer, Material, MeshFile, Sides, Span};
 
-const ELEMENTS: [(&str, Element); 2] = [("q4", Element::Quad4), ("q4_bbar", Element::Quad4Bbar)];
+const IN_PLANE: [(&str, Element); 2] = [("q4", Element::Quad4), ("q4_bbar", Element::Quad4Bbar)];
+const IN_SPACE: [(&str, Element); 2] = [("h8", Element::Hex8), ("h8_bbar", Element::Hex8Bbar)];
 
 /// One of the two tables; `file` is the scene's.
 pub(super) fn read(root: &Section, file: &Path) -> Result<Body> {
@@ -25,22 +26,51 @@ fn layer(section: &Section) -> Result<Layer> {
     // Beyond these the cells at one face have no height to speak of.
     const GRADING: Quantity =
         Quantity { what: "a ratio of cell heights from 1e-6 to 1e6", accepts: |ratio| (1e-6..=1e6).contains(&ratio) };
-    const SIDES: [(&str, Sides); 4] =
-        [("periodic", Sides::Periodic), ("free", Sides::Free), ("roller", Sides::Roller), ("fixed", Sides::Fixed)];
+    const CELLS: [&str; 2] = [
+        "two whole numbers, each at least 1: [along the face, through the depth]",
+        "three whole numbers, each at least 1: [along x, along y, through the depth]",
+    ];
 
     section.only(&["width", "depth", "cells", "grading", "sides", "element"])?;
+    let widths = section.one_or_two("width", LENGTH)?.ok_or_else(|| section.missing("width", LENGTH.what))?;
+    let directions = widths.len();
+    let depth = section.number("depth", LENGTH)?;
+    let cells = section.counts("cells", CELLS[directions - 1], (directions + 1, super::COUNT))?;
+    let grading = section.optional_number("grading", GRADING)?.unwrap_or(1.0);
+    let sides = sides(section, directions)?;
+    let spans = widths.iter().zip(&cells).zip(sides);
     Ok(Layer {
-        width: section.number("width", LENGTH)?,
-        depth: section.number("depth", LENGTH)?,
-        cells: section.pair(
-            "cells",
-            "two whole numbers, each at least 1: [along the face, through the depth]",
-            super::COUNT,
-        )?,
-        grading: section.optional_number("grading", GRADING)?.unwrap_or(1.0),
-        sides: section.choice("sides", &SIDES, &[])?,
-        element: element(section)?,
+        spans: spans.map(|((&width, &cells), sides)| Span { width, cells, sides }).collect(),
+        depth,
+        rows: cells[directions],
+        grading,
+        element: match directions {
+            1 => section.optional_choice("element", &IN_PLANE, &[])?.unwrap_or(Element::Quad4),
+            _ => section.optional_choice("element", &IN_SPACE, &[])?.unwrap_or(Element::Hex8),
+        },
     })
+}
+
+/// Of all directions, or of each.
+fn sides(section: &Section, directions: usize) -> Result<Vec<Sides>> {
+    const SIDES: [(&str, Sides); 4] =
+        [("periodic", Sides::Periodic), ("free", Sides::Free), ("roller", Sides::Roller), ("fixed", Sides::Fixed)];
+    const WHAT: &str = "the sides of both directions, or an array of those along x and of those along y";
+
+    if !section.table().get("sides").is_some_and(toml::Value::is_array) {
+        return Ok(vec![section.choice("sides", &SIDES, &[])?; directions]);
+    }
+    let known = |value: &toml::Value| SIDES.into_iter().find(|(name, _)| value.as_str() == Some(name));
+    let sides: Option<Vec<Sides>> =
+        section.values("sides", WHAT)?.iter().map(|value| known(value).map(|(_, sides)| sides)).collect();
+    match sides.filter(|sides| sides.len() == directions && directions == 2) {
+        Some(sides) => Ok(sides),
+        None => {
+            let names: Vec<&str> = SIDES.iter().map(|(name, _)| *name).collect();
+            let many = if directions == 2 { "two of" } else { "one of" };
+            Err(section.error("sides", format!("must be {many} {}", names.join(", "))))
+        }
+    }
 }
 
 fn mesh(section: &Section, scene: &Path) -> Result<MeshFile> {
@@ -62,11 +92,8 @@ fn mesh(section: &Section, scene: &Path) -> Result<MeshFile> {
             format!("{wrong}; give the names or numbers of the physical curves that are held, so that the body stays");
         return Err(section.error("fixed", reason));
     }
-    Ok(MeshFile { file, contact, fixed, roller: names(section, "roller")?, element: element(section)? })
-}
-
-fn element(section: &Section) -> Result<Element> {
-    Ok(section.optional_choice("element", &ELEMENTS, &[])?.unwrap_or(Element::Quad4))
+    let element = section.optional_choice("element", &IN_PLANE, &[])?.unwrap_or(Element::Quad4);
+    Ok(MeshFile { file, contact, fixed, roller: names(section, "roller")?, element })
 }
 
 /// An array of names or numbers of physical curves, each once; empty when absent.

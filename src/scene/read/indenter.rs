@@ -1,5 +1,7 @@
 //! The `[indenter]` table.
 
+use nalgebra::Vector2;
+
 use crate::error::Result;
 use crate::scene::keys::{Quantity, Section};
 use crate::scene::{Detrend, Extend, Indenter, Reading, Rms, Seam};
@@ -14,9 +16,13 @@ enum Profile {
     Expression,
     Sampled,
     Rough,
+    Paraboloid,
+    Sphere,
+    Cone,
+    Waves,
 }
 
-const PROFILES: [(&str, Profile); 7] = [
+const PROFILES: [(&str, Profile); 11] = [
     ("harmonic", Profile::Harmonic),
     ("parabola", Profile::Parabola),
     ("circle", Profile::Circle),
@@ -24,6 +30,10 @@ const PROFILES: [(&str, Profile); 7] = [
     ("expression", Profile::Expression),
     ("sampled", Profile::Sampled),
     ("rough", Profile::Rough),
+    ("paraboloid", Profile::Paraboloid),
+    ("sphere", Profile::Sphere),
+    ("cone", Profile::Cone),
+    ("waves", Profile::Waves),
 ];
 
 const LENGTH: Quantity = Quantity::positive("a positive length in m");
@@ -84,11 +94,43 @@ pub(super) fn read(section: &Section) -> Result<Indenter> {
         }
         Profile::Expression => {
             section.only(&["profile", "formula"])?;
-            const FORMULA: &str = "a formula of x on one line, such as \"5e-4*(1-cos(2*pi*x))\"";
+            const FORMULA: &str = "a formula of x (in space of x and y) on one line, such as \"5e-4*(1-cos(2*pi*x))\"";
             Ok(Indenter::Expression { formula: text(section, "formula", FORMULA)? })
         }
         Profile::Sampled => sampled(section),
         Profile::Rough => rough(section),
+        Profile::Paraboloid => {
+            section.only(&["profile", "radius", "centre"])?;
+            Ok(Indenter::Paraboloid { radius: both(section, "radius")?, centre: centre(section)? })
+        }
+        Profile::Sphere => {
+            section.only(&["profile", "radius", "centre"])?;
+            Ok(Indenter::Sphere { radius: section.number("radius", LENGTH)?, centre: centre(section)? })
+        }
+        Profile::Cone => {
+            section.only(&["profile", "slope", "centre"])?;
+            Ok(Indenter::Cone { slope: section.number("slope", SLOPE)?, centre: centre(section)? })
+        }
+        Profile::Waves => {
+            section.only(&["profile", "amplitude", "wavelength"])?;
+            Ok(Indenter::Waves { amplitude: both(section, "amplitude")?, wavelength: both(section, "wavelength")? })
+        }
+    }
+}
+
+/// A length for both directions, or one for each.
+fn both(section: &Section, key: &str) -> Result<Vector2<f64>> {
+    let lengths = section.one_or_two(key, LENGTH)?.ok_or_else(|| section.missing(key, LENGTH.what))?;
+    Ok(Vector2::new(lengths[0], lengths[lengths.len() - 1]))
+}
+
+/// A place on the face.
+fn centre(section: &Section) -> Result<Vector2<f64>> {
+    const WHAT: &str = "an array of two positions in m, along x and along y";
+    match section.one_or_two("centre", POSITION)?.as_deref() {
+        None => Err(section.missing("centre", WHAT)),
+        Some([x, y]) => Ok(Vector2::new(*x, *y)),
+        Some(_) => Err(section.error("centre", format!("must be {WHAT}"))),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use nalgebra::Vector2;
 use toml::Value;
 
 use super::Preset;
@@ -97,16 +98,19 @@ fn motion(section: &Section) -> Result<Motion> {
     const VELOCITY: Quantity = Quantity::any("a velocity in m/s");
     const AMPLITUDE: Quantity = Quantity::any("a length in m");
     const CYCLES: Quantity = Quantity::positive("a positive number of cycles");
+    const PHASE: Quantity = Quantity::any("an angle in degrees");
 
     let Some(tangential) = section.optional_section("tangential")? else {
-        return Ok(Motion::Velocity(section.optional_number("velocity", VELOCITY)?.unwrap_or(0.0)));
+        return Ok(Motion::Velocity(section.along_the_face("velocity", VELOCITY)?.unwrap_or_default()));
     };
     if let Some(other) = ["velocity", "distance"].into_iter().find(|key| section.has(key)) {
         return Err(section.error(other, format!("give {other} or tangential, not both")));
     }
-    tangential.only(&["amplitude", "cycles"])?;
-    let amplitude = tangential.number("amplitude", AMPLITUDE)?;
-    Ok(Motion::Tangential { amplitude, cycles: tangential.number("cycles", CYCLES)? })
+    tangential.only(&["amplitude", "cycles", "phase"])?;
+    let amplitude = tangential.along_the_face("amplitude", AMPLITUDE)?;
+    let amplitude = amplitude.ok_or_else(|| tangential.missing("amplitude", AMPLITUDE.what))?;
+    let phase: Vector2<f64> = tangential.along_the_face("phase", PHASE)?.unwrap_or_default();
+    Ok(Motion::Tangential { amplitude, cycles: tangential.number("cycles", CYCLES)?, phase })
 }
 
 /// The duration, given as itself or as the distance slid at the velocity of the phase.
@@ -119,7 +123,7 @@ fn duration(section: &Section, motion: Motion) -> Result<f64> {
     match (duration, distance, motion) {
         (Some(_), Some(_), _) => Err(section.error("distance", "give distance or duration, not both")),
         (Some(duration), None, _) => Ok(duration),
-        (None, Some(distance), Motion::Velocity(velocity)) if velocity != 0.0 => Ok(distance / velocity.abs()),
+        (None, Some(distance), Motion::Velocity(velocity)) if velocity.norm() != 0.0 => Ok(distance / velocity.norm()),
         (None, Some(_), _) => Err(section.error("distance", "needs a velocity other than 0, or give duration instead")),
         (None, None, _) => Err(section.missing("duration", "it in s, or velocity and distance")),
     }
