@@ -250,12 +250,14 @@ impl<const D: usize> Interface<D> {
         let here = self.points.heights()[i].gradient;
         let touches = |other: Option<usize>| other.is_some_and(|other| self.accepted[other].pressure > 0.0);
         let along = |axis: usize| {
-            let side = |sign: f64| {
-                let beside = place + Vector2::ith(axis, sign * BESIDE * size);
+            let side = |steps: f64| {
+                let beside = place + Vector2::ith(axis, steps * BESIDE * size);
                 self.laws.profile.at(beside).map_or(here[axis], |height| height.gradient[axis])
             };
             let (left, right) = (side(-1.0), side(1.0));
-            if (right - left).abs() <= ALIKE * left.abs().max(right.abs()) {
+            let jump = (right - left).abs();
+            // A slope that only passes through zero jumps twice as far over twice the distance.
+            if jump <= ALIKE * left.abs().max(right.abs()) || (side(2.0) - side(-2.0)).abs() > 1.5 * jump {
                 return here[axis];
             }
             match self.points.beside(i, axis).map(touches) {

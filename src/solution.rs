@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use mpi::topology::SimpleCommunicator;
+use nalgebra::Vector2;
 
 use crate::composition::{self, Compliances, Outline, Parts, Problem};
 use crate::error::{Error, Result};
-use crate::output::{HistoryRow, InterfaceFrame};
+use crate::output::{Across, HistoryRow, InterfaceFrame};
 use crate::scene::Scene;
 use crate::solve::{BulkFields, Counts, Driver, Observer, Report};
 use crate::warnings::{Doubts, Warning};
@@ -14,7 +15,7 @@ use crate::warnings::{Doubts, Warning};
 /// What a scene came to; the same on all ranks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
-    /// Undeformed x of the nodes of the contact face, m.
+    /// Undeformed x (in space x, y) of the nodes of the contact face, m.
     pub x: Vec<f64>,
     /// The unloaded state and each accepted step.
     pub history: Vec<HistoryRow>,
@@ -54,7 +55,7 @@ fn solve_parts(comm: &SimpleCommunicator, scene: &Scene, Parts { mesh, shape }: 
     let Collected { history, ends, bulk } = collected;
     let after = doubts.after(scene, &history);
     let warnings = doubts.before.into_iter().chain(after).collect();
-    Ok(Solution { x: mesh.face().places.iter().map(|place| place.x).collect(), history, ends, bulk, counts, warnings })
+    Ok(Solution { x: mesh.face().coordinates, history, ends, bulk, counts, warnings })
 }
 
 impl Solution {
@@ -74,20 +75,22 @@ pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
     let energy = report.problem.energy().unwrap_or_default();
     let mut contact = report.problem.contact()?;
     let (totals, placement) = (contact.totals()?, contact.placement());
+    let [sliding, shear, hysteretic] = [placement.sliding, totals.tangential_force, totals.hysteretic_force];
     let row = HistoryRow {
         time: report.time,
         phase: report.phase,
         approach: placement.approach,
-        sliding: placement.sliding.x,
+        sliding: sliding.x,
         normal_force: totals.normal_force,
-        tangential_force: totals.tangential_force.x,
-        hysteretic_force: totals.hysteretic_force.x,
+        tangential_force: shear.x,
+        hysteretic_force: hysteretic.x,
         contact_fraction: totals.contact_fraction,
         stick_fraction: totals.stick_fraction,
         max_penetration: totals.max_penetration,
         stuck_slip: totals.stuck_slip,
         traction_oscillation: totals.traction_oscillation,
         newton_iterations: report.newton,
+        across: Across { sliding: sliding.y, tangential_force: shear.y, hysteretic_force: hysteretic.y },
         energy,
     };
     row.not_finite().map_or(Ok(row), |name| Err(not_finite("history", name, report.time)))
@@ -97,18 +100,34 @@ pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
 pub fn frame(report: &mut Report<'_>) -> Result<InterfaceFrame> {
     let contact = report.problem.contact()?;
     let fields = contact.fields();
-    let component = |i: usize| contact.displacement.iter().skip(i).step_by(2).copied().collect();
+    let axes = contact.displacement.len() / fields.pressure.len().max(1);
+    let along = |vectors: &[Vector2<f64>]| -> Vec<f64> {
+        vectors.iter().flat_map(|vector| vector.iter().take(axes - 1)).copied().collect()
+    };
+    let component = |i: usize| contact.displacement.iter().skip(i).step_by(axes).copied().collect();
+    let [displacement_x, displacement_z] = if axes == 2 { [component(0), component(1)] } else { Default::default() };
     let frame = InterfaceFrame {
         time: report.time,
+        shear: along(&fields.shear),
+        slip_rate: along(&fields.slip_rate),
         pressure: fields.pressure,
-        shear: fields.shear.iter().map(|q| q.x).collect(),
         gap: fields.gap,
-        slip_rate: fields.slip_rate.iter().map(|w| w.x).collect(),
-        displacement_x: component(0),
-        displacement_z: component(1),
+        displacement_x,
+        displacement_z,
+        displacement: if axes == 3 { contact.displacement.to_vec() } else { Vec::new() },
     };
     frame.not_finite().map_or(Ok(()), |name| Err(not_finite("interface", name, report.time)))?;
     Ok(frame)
+}
+
+/// The components of displacement and stress that the results have, node by node.
+pub fn components(fields: &BulkFields, in_space: bool) -> (Vec<f64>, Vec<f64>) {
+    if in_space {
+        return (fields.displacement.as_flattened().to_vec(), fields.stress.as_flattened().to_vec());
+    }
+    let displacement = fields.displacement.iter().flat_map(|[x, _, z]| [*x, *z]);
+    let stress = fields.stress.iter().flat_map(|[xx, yy, zz, _, _, xz]| [*xx, *zz, *yy, *xz]);
+    (displacement.collect(), stress.collect())
 }
 
 /// The fields of the bulk as they are, of this rank's nodes.

@@ -12,7 +12,7 @@ use std::time::Duration;
 use common::sample;
 use libtest_mimic::{Arguments, Failed, Trial};
 use mpjr::output::bulk::{self, Frame};
-use mpjr::output::{HistoryRow, Plan, Recorder, reader::Results};
+use mpjr::output::{FacePlan, HistoryRow, Plan, Recorder, reader::Results};
 
 /// The argument that makes this executable the writer.
 const WRITER: &str = "--writer";
@@ -38,7 +38,7 @@ fn write_without_end(kind: &str, path: &Path) {
     loop {
         let rows = if kind == "rows" { 100_000 } else { 1 };
         let plan = Plan {
-            interface_x: (0..FACE).map(|node| node as f64).collect(),
+            face: FacePlan::along_x((0..FACE).map(|node| node as f64).collect()),
             ..sample::plan(rows, usize::from(kind == "creation"))
         };
         let recorder = Recorder::create(path, &sample::metadata(), plan, &HistoryRow::default()).unwrap();

@@ -8,7 +8,7 @@ use std::path::Path;
 use common::sample::{self, FACE};
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor, VarLenUnicode};
 use mpjr::error::Error;
-use mpjr::output::{HistoryRow, Plan, Recorder, Status, reader::Results};
+use mpjr::output::{FacePlan, HistoryRow, Plan, Recorder, Status, reader::Results};
 
 fn record(path: &Path, planned: usize, rows: usize) {
     let recorder =
@@ -164,7 +164,7 @@ fn a_packed_file_has_the_same_content() {
     // Compression may take 5 % of a run; this one claims to have begun a minute ago.
     let started = std::time::SystemTime::now() - std::time::Duration::from_secs(60);
     let metadata = mpjr::output::Metadata { started, ..sample::metadata() };
-    let plan = Plan { interface_x: (0..WIDE).map(|node| node as f64).collect(), ..sample::plan(20, 1) };
+    let plan = Plan { face: FacePlan::along_x((0..WIDE).map(|node| node as f64).collect()), ..sample::plan(20, 1) };
     let recorder = Recorder::create(&path, &metadata, plan, &HistoryRow::default()).unwrap();
     for i in 1..10 {
         recorder.history(sample::row(i)).unwrap();

@@ -127,11 +127,11 @@ fn nodes_on_sampling_points_have_the_file_s_numbers() {
         text = text.replace("width = 1.0", &format!("width = {:?}", f64::from(cells) / 48.0));
         text += &format!("profile = \"sampled\"\nfile = \"wave.txt\"\nextend = {extend:?}\n");
         let scene = read(&text, &Source { file: file.clone(), overrides: vec![] }).unwrap();
-        let face = outline(&scene, &file).unwrap().face;
-        let profile = shape(&scene, &file, &elevations(&scene, &file).unwrap(), face).unwrap().profile;
+        let outline = outline(&scene, &file).unwrap();
+        let profile = shape(&scene, &file, &elevations(&scene, &file).unwrap(), &outline).unwrap().profile;
         for (k, height) in heights.iter().enumerate() {
             // As the mesh has its nodes.
-            let x = scene.layer().unwrap().width * k as f64 / f64::from(cells);
+            let x = scene.layer().unwrap().spans[0].width * k as f64 / f64::from(cells);
             assert_eq!(profile.at(x).unwrap().height, *height, "{sides} {k}");
         }
     }
@@ -197,8 +197,8 @@ fn sampled(text: &[u8], keys: &str, set: &[&str]) -> (tempfile::TempDir, std::pa
 const BOUNDED: [&str; 3] = ["layer.sides=free", "indenter.extend=error", "layer.cells=[16,4]"];
 
 fn shape_of(file: &Path, scene: &Scene) -> Result<Shape, mpjr::error::Error> {
-    let face = outline(scene, file)?.face;
-    shape(scene, file, &elevations(scene, file)?, face)
+    let outline = outline(scene, file)?;
+    shape(scene, file, &elevations(scene, file)?, &outline)
 }
 
 /// Elevations of a valley 4 um deep over a face of 40 um, in m; the same as five instruments would write them.

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use common::smallest::{SMALLEST, assert_round_trip, read_set};
 use mpjr::error::{Error, Result};
 use mpjr::scene::*;
+use nalgebra::Vector2;
 
 fn error_at(result: Result<Scene>) -> String {
     match result {
@@ -35,9 +36,9 @@ fn what_may_be_absent_has_its_default() {
     assert_eq!(scene.output, Output { interface_every: 1, bulk_at: vec![], checkpoint_every: 0, energy: true });
     let [first, second] = scene.phases.as_slice() else { panic!("two phases") };
     assert_eq!((first.name.as_str(), second.name.as_str()), ("phase-1", "phase-2"));
-    assert_eq!((first.approach, first.motion), (None, Motion::Velocity(0.0)));
+    assert_eq!((first.approach, first.motion), (None, Motion::Velocity(Vector2::zeros())));
     // The distance is the length of the way, whichever way.
-    assert_eq!((second.duration, second.motion), (2.0, Motion::Velocity(-0.5)));
+    assert_eq!((second.duration, second.motion), (2.0, Motion::Velocity([-0.5, 0.0].into())));
 }
 
 #[test]
@@ -45,8 +46,8 @@ fn the_paper_s_scene_is_read_as_written() {
     let file = common::directory("runs/eva-one-arm.toml");
     let text = std::fs::read_to_string(&file).unwrap();
     let scene = read(&text, &Source { file, overrides: vec![] }).unwrap();
-    assert_eq!(layer(&scene).sides, Sides::Periodic);
-    assert_eq!(layer(&scene).cells, [128, 128]);
+    assert_eq!(layer(&scene).spans, [Span { width: 1.0, cells: 128, sides: Sides::Periodic }]);
+    assert_eq!(layer(&scene).rows, 128);
     assert_eq!(scene.materials[0].arms, [Arm { weight: 0.579, time: 0.817 }]);
     assert_eq!(scene.materials[0].poisson_rule, Some(PoissonRule::ConstantRatio));
     assert_eq!(scene.indenter, Indenter::Harmonic { amplitude: 5e-4, wavelength: 1.0 });
@@ -109,10 +110,13 @@ fn overrides_are_applied_in_order_by_name_and_by_index() {
     )
     .unwrap();
     assert_eq!(scene.title, "two words");
-    assert_eq!(layer(&scene).cells, [4, 7]);
-    assert_eq!((layer(&scene).sides, layer(&scene).grading), (Sides::Roller, 3.0));
+    assert_eq!((layer(&scene).spans[0].cells, layer(&scene).rows), (4, 7));
+    assert_eq!((layer(&scene).spans[0].sides, layer(&scene).grading), (Sides::Roller, 3.0));
     assert_eq!(scene.solver.tolerance, 1e-6);
-    assert_eq!((scene.phases[1].name.as_str(), scene.phases[1].motion), ("fast, 1.5 m/s", Motion::Velocity(1.5)));
+    assert_eq!(
+        (scene.phases[1].name.as_str(), scene.phases[1].motion),
+        ("fast, 1.5 m/s", Motion::Velocity([1.5, 0.0].into()))
+    );
     assert_eq!(scene.phases[0].stepping, Stepping::Steps(9));
     assert_eq!(scene.output.bulk_at[1], When::Time(1.0));
 }
@@ -249,7 +253,8 @@ impl Random {
     fn scene(&mut self) -> Scene {
         let wavelength = self.positive();
         let count = 1 + self.below(4) as usize;
-        let phases: Vec<Phase> = (0..count).map(|index| self.phase(index)).collect();
+        let space = self.below(3) == 0;
+        let phases: Vec<Phase> = (0..count).map(|index| self.phase(index, space)).collect();
         let radius = self.positive();
         let centre = self.unit() - 0.5;
         let [hurst, seed] = [self.unit(), self.unit()];
@@ -276,31 +281,39 @@ impl Random {
         let penalty = if exact { self.of(&[None, penalty]) } else { penalty };
         let ends = phases.iter().take(2).map(|phase| When::PhaseEnd(phase.name.clone()));
         let times = [When::Time(phases[0].duration * self.unit())];
-        let body = if self.below(4) == 0 { self.mesh_file() } else { self.layer(wavelength) };
+        let body = match space {
+            false if self.below(4) == 0 => self.mesh_file(),
+            _ => self.layer(wavelength, space),
+        };
         let mut materials = self.materials(&body);
         if adaptive {
             materials.iter_mut().for_each(|material| material.memory = Memory::Exponential);
         }
+        let solid = self.solid(wavelength);
         Scene {
             title: self.of(&["", "plain", "é \"quoted\" \\ # = [layer]", "'''"]).to_owned(),
             body,
             materials,
-            indenter: self.of(&[
-                Indenter::Harmonic { amplitude: 1e-9 * radius, wavelength },
-                Indenter::Parabola { radius, centre },
-                Indenter::Circle { radius, centre },
-                Indenter::Wedge { slope: radius, centre },
-                Indenter::Expression { formula: "5e-4*(1-cos(2*pi*x))".to_owned() },
-                Indenter::Sampled { file, reading: Reading::default(), extend: Extend::Periodic, period },
-                Indenter::Rough {
-                    hurst,
-                    rms,
-                    shortest: 0.1 * wavelength,
-                    longest: 0.5 * wavelength,
-                    period: wavelength,
-                    seed: (seed * 1e18) as u64,
-                },
-            ]),
+            indenter: if space && self.below(2) == 0 {
+                solid
+            } else {
+                self.of(&[
+                    Indenter::Harmonic { amplitude: 1e-9 * radius, wavelength },
+                    Indenter::Parabola { radius, centre },
+                    Indenter::Circle { radius, centre },
+                    Indenter::Wedge { slope: radius, centre },
+                    Indenter::Expression { formula: "5e-4*(1-cos(2*pi*x))".to_owned() },
+                    Indenter::Sampled { file, reading: Reading::default(), extend: Extend::Periodic, period },
+                    Indenter::Rough {
+                        hurst,
+                        rms,
+                        shortest: 0.1 * wavelength,
+                        longest: 0.5 * wavelength,
+                        period: wavelength,
+                        seed: (seed * 1e18) as u64,
+                    },
+                ][..7 - usize::from(space)])
+            },
             contact: Contact { penalty, quadrature },
             friction: self.of(&[None, Some(friction)]),
             output: Output {
@@ -314,14 +327,32 @@ impl Random {
         }
     }
 
-    fn layer(&mut self, wavelength: f64) -> Body {
+    /// An indenter that has no y of its own only in space.
+    fn solid(&mut self, wavelength: f64) -> Indenter {
+        let (radius, centre) = (self.positive(), Vector2::new(self.unit(), self.unit()));
+        let both = Vector2::new(radius, self.of(&[radius, 2.0 * radius]));
+        self.of(&[
+            Indenter::Paraboloid { radius: both, centre },
+            Indenter::Sphere { radius, centre },
+            Indenter::Cone { slope: radius, centre },
+            Indenter::Waves { amplitude: both, wavelength: Vector2::repeat(wavelength) },
+        ])
+    }
+
+    fn layer(&mut self, wavelength: f64, space: bool) -> Body {
+        let span = |random: &mut Self| Span {
+            width: wavelength * (1 + random.below(9)) as f64,
+            cells: 2 + random.below(300) as usize,
+            sides: random.of(&[Sides::Periodic, Sides::Free, Sides::Roller, Sides::Fixed]),
+        };
+        let spans = (0..1 + usize::from(space)).map(|_| span(self)).collect();
+        let elements = if space { [Element::Hex8, Element::Hex8Bbar] } else { [Element::Quad4, Element::Quad4Bbar] };
         Body::Layer(Layer {
-            width: wavelength * (1 + self.below(9)) as f64,
+            spans,
             depth: self.positive(),
-            cells: [2 + self.below(300) as usize, 4 + self.below(300) as usize],
+            rows: 4 + self.below(300) as usize,
             grading: self.positive(),
-            sides: self.of(&[Sides::Periodic, Sides::Free, Sides::Roller, Sides::Fixed]),
-            element: self.of(&[Element::Quad4, Element::Quad4Bbar]),
+            element: self.of(&elements),
         })
     }
 
@@ -364,16 +395,18 @@ impl Random {
             .collect()
     }
 
-    fn phase(&mut self, index: usize) -> Phase {
-        let tangential = Motion::Tangential { amplitude: self.unit() - 0.5, cycles: self.positive() };
-        let velocity = Motion::Velocity(self.unit() - 0.5);
+    fn phase(&mut self, index: usize, space: bool) -> Phase {
+        let mut along = || Vector2::new(self.unit() - 0.5, if space { self.unit() - 0.5 } else { 0.0 });
+        let [amplitude, velocity, phase] = [along(), along(), along() * 90.0];
+        let tangential = Motion::Tangential { amplitude, cycles: self.positive(), phase };
+        let velocity = Motion::Velocity(velocity);
         Phase {
             name: format!("{} {index}", self.of(&["a", "b.c", "\"", "7"])),
             duration: self.positive(),
             stepping: self.of(&[Stepping::Steps(3), Stepping::Steps(1000), Stepping::Tolerance(1e-3)]),
             approach: self.of(&[None, Some(-1.0), Some(9e-5)]),
             normal_force: None,
-            motion: self.of(&[Motion::Velocity(0.0), velocity, tangential]),
+            motion: self.of(&[Motion::Velocity(Vector2::zeros()), velocity, tangential]),
         }
     }
 }

@@ -172,7 +172,7 @@ fn plan(scene: &Scene, mesh: &Meshed, phases: &[Phase]) -> Plan {
         phase_names: phases.iter().map(|phase| phase.name.clone()).collect(),
         energy: scene.output.energy,
         interface_rows: steps.checked_div(scene.output.interface_every).map_or(ends, |rows| rows + ends),
-        interface_x: mesh.face().places.iter().map(|place| place.x).collect(),
+        face: mesh.face(),
         bulk: bulk_plan(scene, mesh, phases),
     }
 }
@@ -182,12 +182,6 @@ fn bulk_plan(scene: &Scene, mesh: &Meshed, phases: &[Phase]) -> Option<BulkPlan>
     if scene.output.bulk_at.is_empty() {
         return None;
     }
-    let mesh = mesh.mesh();
-    Some(BulkPlan {
-        frames: phases.iter().flat_map(|phase| &phase.steps).filter(|target| target.bulk_output).count(),
-        axes: 2,
-        coordinates: mesh.nodes.iter().flat_map(|node| [node.x, node.y]).collect(),
-        corners: 4,
-        cells: mesh.cells.iter().flat_map(|cell| cell.as_multilinear()).map(i64::from).collect(),
-    })
+    let frames = phases.iter().flat_map(|phase| &phase.steps).filter(|target| target.bulk_output).count();
+    Some(mesh.bulk(frames))
 }

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use super::case::Done;
 use super::summary::Outcome;
 use crate::composition::{Estimate, Outline};
+use crate::output::is_vector;
 use crate::petsc;
 use crate::scene::Scene;
 use crate::warnings::Warning;
@@ -20,7 +21,8 @@ pub fn outcome(scene: &Scene, done: &Done, out: &Path) -> Value {
         "error": result.as_ref().err().map(ToString::to_string),
         "results": out.display().to_string(),
         "warnings": warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
-        "last": last.values(scene.output.energy).map(|(name, value)| (name.to_owned(), value.into()))
+        "last": last.values(scene.output.energy)
+            .map(|(name, numbers)| (name.to_owned(), number(scene, name, numbers)))
             .collect::<serde_json::Map<_, Value>>(),
         "steps": counts.steps,
         "pieces": counts.pieces,
@@ -31,6 +33,11 @@ pub fn outcome(scene: &Scene, done: &Done, out: &Path) -> Value {
         "setup_seconds": setup.as_secs_f64(),
         "peak_memory_bytes": petsc::peak_memory(),
     })
+}
+
+/// A number, or in space the components of a vector.
+fn number(scene: &Scene, name: &str, [x, y]: [f64; 2]) -> Value {
+    if scene.is_in_space() && is_vector(name) { json!([x, y]) } else { x.into() }
 }
 
 /// What a run would do.

@@ -56,5 +56,9 @@ fn name(indenter: &Indenter) -> String {
         Indenter::Expression { formula } => format!("expression h = {formula}"),
         Indenter::Sampled { file, .. } => format!("sampled {file:?}"),
         Indenter::Rough { seed, .. } => format!("rough, seed {seed}"),
+        Indenter::Paraboloid { .. } => "paraboloid".to_owned(),
+        Indenter::Sphere { .. } => "sphere".to_owned(),
+        Indenter::Cone { .. } => "cone".to_owned(),
+        Indenter::Waves { .. } => "waves".to_owned(),
     }
 }

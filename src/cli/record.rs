@@ -160,16 +160,8 @@ impl Observer for Recording<'_> {
         agree(self.world, mine)?;
         if report.bulk_output {
             let fields = agree(self.world, solution::bulk(&mut report))?;
-            let frame = Frame {
-                time: report.time,
-                nodes: &fields.nodes,
-                displacement: &fields.displacement.iter().flat_map(|[x, _, z]| [*x, *z]).collect::<Vec<_>>(),
-                stress: &fields
-                    .stress
-                    .iter()
-                    .flat_map(|[xx, yy, zz, _, _, xz]| [*xx, *zz, *yy, *xz])
-                    .collect::<Vec<_>>(),
-            };
+            let (displacement, stress) = solution::components(&fields, self.scene.is_in_space());
+            let frame = Frame { time: report.time, nodes: &fields.nodes, displacement: &displacement, stress: &stress };
             output::bulk::write(self.world, self.recorder.as_ref(), &frame)?;
         }
         self.checkpoint(&mut report)

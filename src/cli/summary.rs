@@ -10,7 +10,7 @@ use crate::energy::Energy;
 use crate::output::Status;
 use crate::petsc;
 use crate::scene::{
-    Coefficient, Friction, Law, Penalty, PoissonRule, Quadrature, Scene, Sides, Strategy, added_compliance,
+    Coefficient, Friction, Law, Penalty, PoissonRule, Quadrature, Scene, Sides, Span, Strategy, added_compliance,
     shortest_step,
 };
 use crate::solve::{Counts, Work};

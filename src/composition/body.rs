@@ -11,7 +11,8 @@ use crate::element::solid::Dilatation;
 use crate::error::{Error, Result};
 use crate::input;
 use crate::mesh::gmsh::{self, Flaw, Role, Roles, called};
-use crate::mesh::{Layer, Mesh, Sides, Source, Span};
+use crate::mesh::{Face, Grid, Layer, Mesh, Sides, Source, Span};
+use crate::output::{BulkPlan, FacePlan};
 use crate::parallel::agree;
 use crate::petsc::Vector;
 use crate::rheology::Memory;
@@ -49,6 +50,40 @@ impl Meshed {
 
     fn in_plane(mesh: Mesh<2>) -> Self {
         Self::Plane(Source::Mesh(mesh))
+    }
+
+    /// The nodes of its contact face, for output.
+    pub fn face(&self) -> FacePlan {
+        match self {
+            Self::Plane(source) => face_plan(&source.face()),
+            Self::Space(source) => face_plan(&source.face()),
+        }
+    }
+
+    /// Its nodes and cells, for so many frames of output.
+    pub fn bulk(&self, frames: usize) -> BulkPlan {
+        match self {
+            Self::Plane(source) => bulk_plan(&source.mesh(), frames),
+            Self::Space(source) => bulk_plan(&source.mesh(), frames),
+        }
+    }
+}
+
+fn face_plan<const D: usize>(face: &Face<D>) -> FacePlan {
+    FacePlan {
+        in_space: D == 3,
+        coordinates: face.places.iter().flat_map(|place| place.iter().take(D - 1)).copied().collect(),
+        grid: face.grid.as_ref().filter(|_| D == 3).map_or_else(Vec::new, Grid::counts),
+    }
+}
+
+fn bulk_plan<const D: usize>(mesh: &Mesh<D>, frames: usize) -> BulkPlan {
+    BulkPlan {
+        frames,
+        axes: D,
+        coordinates: mesh.nodes.iter().flatten().copied().collect(),
+        corners: 1 << D,
+        cells: mesh.cells.iter().flat_map(|cell| cell.as_multilinear()).map(i64::from).collect(),
     }
 }
 
@@ -189,7 +224,11 @@ impl From<scene::Sides> for Sides {
 
 fn layered(layer: &scene::Layer, scene: &Scene) -> Layer {
     Layer {
-        spans: layer.spans.iter().map(|&scene::Span { width, cells, sides }| Span { width, cells, sides: sides.into() }).collect(),
+        spans: layer
+            .spans
+            .iter()
+            .map(|&scene::Span { width, cells, sides }| Span { width, cells, sides: sides.into() })
+            .collect(),
         depth: layer.depth,
         rows: layer.rows,
         grading: layer.grading,

@@ -9,8 +9,8 @@ use crate::expression::Expression;
 use crate::input;
 use crate::loading::{Phase, Placement};
 use crate::profile::{
-    BLEND, Circle, Extruded, Formula, Harmonic, Parabola, Point, Profile, Repeated, Rms, Rough, Roughness, Sampled, Surface,
-    Survey, Wedge,
+    BLEND, Circle, Extruded, Formula, Harmonic, Parabola, Point, Profile, Repeated, Rms, Rough, Roughness, Sampled,
+    Surface, Survey, Wedge,
     profilometer::{self, Layout, Measured},
 };
 use crate::scene::{self, Detrend, Extend, Indenter, Reading, Scene, Seam};

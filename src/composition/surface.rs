@@ -9,9 +9,7 @@ use super::profile::{Finest, Shape, survey};
 use super::{Stretch, course};
 use crate::error::{Error, Result};
 use crate::expression::Expression;
-use crate::profile::{
-    Cone, Paraboloid, Profile, RepeatedSurface, Section, Sphere, Surface, SurfaceFormula, Waves,
-};
+use crate::profile::{Cone, Paraboloid, Profile, RepeatedSurface, Section, Sphere, Surface, SurfaceFormula, Waves};
 use crate::scene::{Indenter, Scene};
 
 /// The profile of the scene in `file` over a face of two directions; none where it is the same for every y. Along periodic sides

@@ -3,7 +3,7 @@
 use crate::energy::Energy;
 
 /// One row of `/history`: the state at the end of an accepted step (row 0: the unloaded state). Forces are per unit
-/// thickness (N/m). The default is the unloaded state at t = 0.
+/// thickness (N/m), in space N. The default is the unloaded state at t = 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct HistoryRow {
     /// Time, s.
@@ -32,35 +32,55 @@ pub struct HistoryRow {
     pub traction_oscillation: f64,
     /// Newton iterations that the step took.
     pub newton_iterations: usize,
+    /// What vectors have along y.
+    pub across: Across,
     /// The energy balance; recorded only when [`Plan::energy`](super::Plan::energy) is set.
     pub energy: Energy,
 }
 
-/// One row of the fields under `/interface`; every field has one value for each node of the contact face, in the
-/// order of [`Plan::interface_x`](super::Plan::interface_x).
+/// The components along y of the vectors of a [`HistoryRow`]; none in the plane.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Across {
+    /// m
+    pub sliding: f64,
+    /// N
+    pub tangential_force: f64,
+    /// N
+    pub hysteretic_force: f64,
+}
+
+/// One row of the fields under `/interface`; every field has one value, or the components of one vector, for each node of the
+/// contact face, in the order of [`Plan::face`](super::Plan::face).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct InterfaceFrame {
     /// Time, s.
     pub time: f64,
     /// Contact pressure, Pa, positive in compression.
     pub pressure: Vec<f64>,
-    /// Tangential traction on the layer, Pa, positive along +x.
+    /// Tangential traction on the layer, Pa, positive along +x; in space x and y of it.
     pub shear: Vec<f64>,
     /// Normal gap, m, negative where the indenter penetrates.
     pub gap: Vec<f64>,
-    /// Slip rate, m/s.
+    /// Slip rate, m/s; in space x and y of it.
     pub slip_rate: Vec<f64>,
-    /// Displacement of the face along x, m.
+    /// In the plane: displacement of the face along x, m.
     pub displacement_x: Vec<f64>,
-    /// Displacement of the face along z, m.
+    /// In the plane: displacement of the face along z, m.
     pub displacement_z: Vec<f64>,
+    /// In space: x, y and z of the displacement of the face, m.
+    pub displacement: Vec<f64>,
 }
 
 /// Where a history column has its number in a row; also the type it has in the file (float64 or int64).
 pub(super) enum Value {
-    Real(fn(&mut HistoryRow) -> &mut f64),
+    Real(Place),
     Count(fn(&mut HistoryRow) -> &mut usize),
+    /// Along x, and in space along y.
+    Along([Place; 2]),
 }
+
+/// Where a number is in a row.
+type Place = fn(&mut HistoryRow) -> &mut f64;
 
 /// A column of the history.
 pub(super) struct Column {
@@ -79,6 +99,10 @@ const fn real(
     Column { name, units, long_name, value: Value::Real(value) }
 }
 
+const fn along(name: &'static str, units: &'static str, long_name: &'static str, value: [Place; 2]) -> Column {
+    Column { name, units, long_name, value: Value::Along(value) }
+}
+
 const fn count(name: &'static str, long_name: &'static str, value: fn(&mut HistoryRow) -> &mut usize) -> Column {
     Column { name, units: "1", long_name, value: Value::Count(value) }
 }
@@ -88,10 +112,10 @@ const fn count(name: &'static str, long_name: &'static str, value: fn(&mut Histo
 pub(super) const HISTORY: &[Column] = &[
     count("phase", "index of the phase, see the attribute names", |r| &mut r.phase),
     real("approach", "m", "imposed normal approach of the indenter", |r| &mut r.approach),
-    real("sliding", "m", "imposed tangential displacement of the indenter", |r| &mut r.sliding),
+    along("sliding", "m", "imposed tangential displacement of the indenter", [|r| &mut r.sliding, |r| &mut r.across.sliding]),
     real("normal_force", "N/m", "normal force per unit thickness, compression positive", |r| &mut r.normal_force),
-    real("tangential_force", "N/m", "tangential force on the layer per unit thickness, positive along +x", |r| &mut r.tangential_force),
-    real("hysteretic_force", "N/m", "integral of pressure times slope of the profile, per unit thickness", |r| &mut r.hysteretic_force),
+    along("tangential_force", "N/m", "tangential force on the layer per unit thickness, positive along +x", [|r| &mut r.tangential_force, |r| &mut r.across.tangential_force]),
+    along("hysteretic_force", "N/m", "integral of pressure times slope of the profile, per unit thickness", [|r| &mut r.hysteretic_force, |r| &mut r.across.hysteretic_force]),
     real("contact_fraction", "1", "share of the contact face in contact", |r| &mut r.contact_fraction),
     real("stick_fraction", "1", "share of the contact that sticks", |r| &mut r.stick_fraction),
     real("max_penetration", "m", "largest penetration", |r| &mut r.max_penetration),
@@ -117,18 +141,34 @@ pub(super) fn history(energy: bool) -> impl Iterator<Item = &'static Column> {
     ENERGY.iter().filter(move |_| energy).chain(HISTORY)
 }
 
+/// Whether a column has a component for each direction of the face.
+pub fn is_vector(name: &str) -> bool {
+    HISTORY.iter().any(|column| column.name == name && matches!(column.value, Value::Along(_)))
+}
+
+/// Units and words as they are in space, where forces and energies are not per unit thickness.
+pub(super) fn in_space(units: &'static str, long_name: &str) -> (&'static str, String) {
+    let units = match units {
+        "N/m" => "N",
+        "J/m" => "J",
+        other => other,
+    };
+    (units, long_name.replace(", per unit thickness", "").replace(" per unit thickness", "").replace("+x", "+x and +y"))
+}
+
 impl HistoryRow {
-    /// The names of the columns, as under `/history`, and its numbers.
-    pub fn values(mut self, energy: bool) -> impl Iterator<Item = (&'static str, f64)> {
+    /// The names of the columns, as under `/history`, and its numbers; those of vectors are along x and along y.
+    pub fn values(mut self, energy: bool) -> impl Iterator<Item = (&'static str, [f64; 2])> {
         history(energy).map(move |column| match column.value {
-            Value::Real(of) => (column.name, *of(&mut self)),
-            Value::Count(of) => (column.name, *of(&mut self) as f64),
+            Value::Real(of) => (column.name, [*of(&mut self), 0.0]),
+            Value::Count(of) => (column.name, [*of(&mut self) as f64, 0.0]),
+            Value::Along(of) => (column.name, of.map(|of| *of(&mut self))),
         })
     }
 
     /// The first column whose number is not finite.
     pub fn not_finite(self) -> Option<&'static str> {
-        self.values(true).find(|(_, value)| !value.is_finite()).map(|(name, _)| name)
+        self.values(true).find(|(_, values)| values.iter().any(|value| !value.is_finite())).map(|(name, _)| name)
     }
 }
 
@@ -136,13 +176,17 @@ impl InterfaceFrame {
     /// The first field with a number that is not finite.
     pub fn not_finite(&self) -> Option<&'static str> {
         let bad = |field: &&Field| (field.values)(self).iter().any(|value| !value.is_finite());
-        INTERFACE.iter().find(bad).map(|field| field.name)
+        interface(2).chain(IN_SPACE).find(bad).map(|field| field.name)
     }
 }
 
 /// How many components a field has, and what they are called.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Components {
+    /// One number.
+    Scalar,
+    /// One for each direction of the face; in the plane one number.
+    Along,
     /// One for each axis of the body.
     Axes,
     /// Those of a symmetric tensor.
@@ -153,6 +197,8 @@ impl Components {
     /// Their names in a body of so many axes, in the order of the file.
     pub fn names(self, axes: usize) -> &'static [&'static str] {
         match (self, axes) {
+            (Self::Along, 3) => &["x", "y"],
+            (Self::Scalar | Self::Along, _) => &[],
             (Self::Axes, 3) => &["x", "y", "z"],
             (Self::Axes, _) => &["x", "z"],
             (Self::Stress, 3) => &["xx", "yy", "zz", "xy", "yz", "xz"],
@@ -163,30 +209,65 @@ impl Components {
     /// The dataset of the same group that holds the names.
     pub fn scale(self) -> &'static str {
         match self {
+            Self::Scalar => "",
+            Self::Along => "direction",
             Self::Axes => "axis",
             Self::Stress => "component",
         }
     }
 }
 
-/// A field on the contact face, k x m.
+/// A field on the contact face, k x m, or k x m x components.
 pub(super) struct Field {
     pub name: &'static str,
     pub units: &'static str,
     pub long_name: &'static str,
+    pub components: Components,
     pub values: fn(&InterfaceFrame) -> &[f64],
+}
+
+const fn field(
+    name: &'static str,
+    units: &'static str,
+    long_name: &'static str,
+    (components, values): (Components, fn(&InterfaceFrame) -> &[f64]),
+) -> Field {
+    Field { name, units, long_name, components, values }
 }
 
 /// The fields of `/interface`; `time` follows them.
 #[rustfmt::skip]
-pub(super) const INTERFACE: &[Field] = &[
-    Field { name: "pressure", units: "Pa", long_name: "contact pressure, positive in compression", values: |f| &f.pressure },
-    Field { name: "shear", units: "Pa", long_name: "tangential traction on the layer, positive along +x", values: |f| &f.shear },
-    Field { name: "gap", units: "m", long_name: "normal gap, negative where the indenter penetrates", values: |f| &f.gap },
-    Field { name: "slip_rate", units: "m/s", long_name: "velocity of the indenter relative to the layer along x", values: |f| &f.slip_rate },
-    Field { name: "displacement_x", units: "m", long_name: "displacement of the contact face along x", values: |f| &f.displacement_x },
-    Field { name: "displacement_z", units: "m", long_name: "displacement of the contact face along z", values: |f| &f.displacement_z },
+const INTERFACE: &[Field] = &[
+    field("pressure", "Pa", "contact pressure, positive in compression", (Components::Scalar, |f| &f.pressure)),
+    field("shear", "Pa", "tangential traction on the layer, positive along +x", (Components::Along, |f| &f.shear)),
+    field("gap", "m", "normal gap, negative where the indenter penetrates", (Components::Scalar, |f| &f.gap)),
+    field("slip_rate", "m/s", "velocity of the indenter relative to the layer along x", (Components::Along, |f| &f.slip_rate)),
 ];
+
+/// Those of the plane, where each component of the displacement is a field of its own.
+const IN_PLANE: &[Field] = &[
+    field(
+        "displacement_x",
+        "m",
+        "displacement of the contact face along x",
+        (Components::Scalar, |f| &f.displacement_x),
+    ),
+    field(
+        "displacement_z",
+        "m",
+        "displacement of the contact face along z",
+        (Components::Scalar, |f| &f.displacement_z),
+    ),
+];
+
+/// Those of space.
+const IN_SPACE: &[Field] =
+    &[field("displacement", "m", "displacement of the contact face", (Components::Axes, |f| &f.displacement))];
+
+/// The fields of the face of a body of so many axes.
+pub(super) fn interface(axes: usize) -> impl Iterator<Item = &'static Field> {
+    INTERFACE.iter().chain(if axes == 3 { IN_SPACE } else { IN_PLANE })
+}
 
 /// A nodal field of the bulk, j x nodes x components.
 pub(super) struct BulkField {

@@ -44,7 +44,7 @@ mod xdmf;
 
 use std::time::SystemTime;
 
-pub use columns::{HistoryRow, InterfaceFrame};
+pub use columns::{Across, HistoryRow, InterfaceFrame, is_vector};
 pub use recorder::Recorder;
 pub use resume::{Left, intact, left};
 
@@ -108,10 +108,38 @@ pub struct Plan {
     pub energy: bool,
     /// Rows of the interface fields.
     pub interface_rows: usize,
-    /// Undeformed coordinates of the nodes of the contact face, m; m of them.
-    pub interface_x: Vec<f64>,
+    /// The nodes of the contact face; m of them.
+    pub face: FacePlan,
     /// Bulk fields; none = no group `/bulk` and no XDMF file.
     pub bulk: Option<BulkPlan>,
+}
+
+/// The nodes of a contact face.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FacePlan {
+    /// Whether it has two directions, x and y, rather than x alone.
+    pub in_space: bool,
+    /// Undeformed x, in space x and y, m, node after node.
+    pub coordinates: Vec<f64>,
+    /// In space, how many nodes there are along x and y where they make a grid, y fastest; else empty.
+    pub grid: Vec<usize>,
+}
+
+impl FacePlan {
+    /// Along x.
+    pub fn along_x(coordinates: Vec<f64>) -> Self {
+        Self { coordinates, ..Self::default() }
+    }
+
+    /// How many nodes there are.
+    pub fn nodes(&self) -> usize {
+        self.coordinates.len() / (self.axes() - 1)
+    }
+
+    /// Components of the displacement of a node.
+    fn axes(&self) -> usize {
+        if self.in_space { 3 } else { 2 }
+    }
 }
 
 /// Rows of a result file that are there to stay.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use hdf5::types::VarLenUnicode;
 
 use super::HistoryRow;
-use super::columns::{self, BULK, INTERFACE, Value};
+use super::columns::{self, BULK, Value};
 use crate::error::{Error, Result};
 use crate::input;
 
@@ -96,12 +96,18 @@ impl Results {
         self.file.dataset(dataset).is_ok()
     }
 
-    /// A column of the history as numbers: `time`, `normal_force`, `energy/stored`, ... As many as there are times.
+    /// A column of the history as numbers: `time`, `normal_force`, `energy/stored`, ... As many as there are times. Of a vector
+    /// those along x.
     pub fn history(&self, column: &str) -> Result<Vec<f64>> {
+        self.history_along(column, 0)
+    }
+
+    /// The same of a vector along x, 0, or along y, 1; where it has none, zeros.
+    pub fn history_along(&self, column: &str, direction: usize) -> Result<Vec<f64>> {
         let rows = self.field("history/time")?.rows;
-        let mut values = self.field(&format!("history/{column}"))?.values;
-        values.truncate(rows);
-        Ok(values)
+        let field = self.field(&format!("history/{column}"))?;
+        let value = |row| field.row(row).get(direction).copied().unwrap_or(0.0);
+        Ok((0..rows.min(field.rows)).map(value).collect())
     }
 
     /// The whole history, with the energies where the run kept them.
@@ -112,9 +118,13 @@ impl Results {
             rows.resize(values.len(), HistoryRow::default());
             for (row, value) in rows.iter_mut().zip(values) {
                 match column.value {
-                    Value::Real(of) => *of(row) = value,
+                    Value::Real(of) | Value::Along([of, _]) => *of(row) = value,
                     Value::Count(of) => *of(row) = value as usize,
                 }
+            }
+            if let Value::Along([_, of]) = column.value {
+                let across = self.history_along(column.name, 1)?;
+                rows.iter_mut().zip(across).for_each(|(row, value)| *of(row) = value);
             }
         }
         Ok(rows)
@@ -134,7 +144,8 @@ impl Results {
 
     fn table(&self, group: &str, name: &str) -> Result<Field> {
         let mut field = self.field(&format!("{group}/{name}"))?;
-        let mut grow = INTERFACE.iter().map(|field| field.name).chain(BULK.iter().map(|field| field.name));
+        let fields = columns::interface(2).chain(columns::interface(3)).map(|field| field.name);
+        let mut grow = fields.chain(BULK.iter().map(|field| field.name));
         if grow.any(|field| field == name) {
             let rows = self.field(&format!("{group}/time"))?.rows;
             field.rows = field.rows.min(rows);

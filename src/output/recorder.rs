@@ -6,7 +6,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime};
 
-use super::columns::{self, INTERFACE, Value};
+use super::columns::{self, Value};
 use super::reader::Results;
 use super::store::{Store, Table, failed};
 use super::xdmf::MeshSize;
@@ -105,8 +105,9 @@ impl Recorder {
     pub fn interface(&self, frame: InterfaceFrame) -> Result<()> {
         let mut state = self.shared.lock();
         state.check()?;
-        let nodes = state.plan.interface_x.len();
-        if let Some(field) = INTERFACE.iter().find(|field| (field.values)(&frame).len() != nodes) {
+        let (nodes, axes) = (state.plan.face.nodes(), state.plan.face.axes());
+        let numbers = |field: &columns::Field| nodes * field.components.names(axes).len().max(1);
+        if let Some(field) = columns::interface(axes).find(|field| (field.values)(&frame).len() != numbers(field)) {
             return Err(Error::Internal(format!("interface field {} without a value for each node", field.name)));
         }
         state.interface.push(frame);
@@ -256,17 +257,20 @@ impl State {
         let file = self.store.open()?;
         let [mut history, mut interface] = [0_u64; 2];
         for (ahead, mut row) in self.history.iter().copied().enumerate() {
-            let values: Vec<[u8; 8]> = columns::history(self.plan.energy)
+            let directions = self.plan.face.axes() - 1;
+            let values: Vec<Vec<u8>> = columns::history(self.plan.energy)
                 .map(|column| match column.value {
-                    Value::Real(of) => of(&mut row).to_ne_bytes(),
-                    Value::Count(of) => (*of(&mut row) as i64).to_ne_bytes(),
+                    Value::Real(of) => bytes(&[*of(&mut row)]),
+                    Value::Count(of) => (*of(&mut row) as i64).to_ne_bytes().to_vec(),
+                    Value::Along(of) => bytes(&of.map(|of| *of(&mut row))[..directions]),
                 })
                 .collect();
             let values: Vec<&[u8]> = values.iter().map(|value| value.as_slice()).collect();
             history = self.store.write_row(&file, Table::History, ahead, &values)?.wrapping_add(history);
         }
         for (ahead, frame) in self.interface.iter().enumerate() {
-            let mut values: Vec<Vec<u8>> = INTERFACE.iter().map(|field| bytes((field.values)(frame))).collect();
+            let fields = columns::interface(self.plan.face.axes());
+            let mut values: Vec<Vec<u8>> = fields.map(|field| bytes((field.values)(frame))).collect();
             values.push(bytes(&[frame.time]));
             let values: Vec<&[u8]> = values.iter().map(Vec::as_slice).collect();
             interface = self.store.write_row(&file, Table::Interface, ahead, &values)?.wrapping_add(interface);

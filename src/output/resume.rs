@@ -40,7 +40,8 @@ pub(super) fn reopen(path: &Path, plan: Plan, rows: Rows) -> Result<State> {
 pub fn intact(path: &Path, rows: Rows) -> Result<()> {
     let results = Results::open(path)?;
     let bulk = results.has("bulk/time").then(super::BulkPlan::default);
-    let plan = Plan { energy: results.has("history/energy/stored"), bulk, ..Plan::default() };
+    let face = super::FacePlan { in_space: results.has("interface/coordinates"), ..super::FacePlan::default() };
+    let plan = Plan { energy: results.has("history/energy/stored"), face, bulk, ..Plan::default() };
     drop(results);
     Store::reopen(path, &plan, rows).map(|_| ())
 }
@@ -48,7 +49,8 @@ pub fn intact(path: &Path, rows: Rows) -> Result<()> {
 /// Refuses results whose nodes or cells are not those of the plan.
 fn unchanged(results: &Results, plan: &Plan) -> Result<()> {
     let same = |name: &str, planned: &[f64]| Ok::<_, Error>(results.field(name)?.values == planned);
-    let mut whole = same("interface/x", &plan.interface_x)?;
+    let places = if plan.face.in_space { "interface/coordinates" } else { "interface/x" };
+    let mut whole = same(places, &plan.face.coordinates)?;
     if let Some(bulk) = &plan.bulk {
         let cells: Vec<f64> = bulk.cells.iter().map(|&node| node as f64).collect();
         whole &= same("bulk/coordinates", &bulk.coordinates)? && same("bulk/cells", &cells)?;

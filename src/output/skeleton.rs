@@ -10,7 +10,7 @@ use hdf5::plist::link_create::CharEncoding;
 use hdf5::types::VarLenUnicode;
 use hdf5::{Dataset, H5Type, Location};
 
-use super::columns::{self, BULK, Components, INTERFACE, Value};
+use super::columns::{self, BULK, Components, Value};
 use super::xdmf::MeshSize;
 use super::{BulkPlan, Metadata, Plan, Status};
 use crate::error::{Error, Result};
@@ -37,9 +37,14 @@ pub(super) enum Purpose {
 struct Described {
     set: Dataset,
     units: &'static str,
-    long_name: &'static str,
+    long_name: String,
     /// The dataset that is the scale of each dimension, named from the root.
     scales: Vec<String>,
+}
+
+/// Units and words of a column or field.
+fn about((units, long_name): (&'static str, &'static str), in_space: bool) -> (&'static str, String) {
+    if in_space { columns::in_space(units, long_name) } else { (units, long_name.to_owned()) }
 }
 
 /// A file in the making.
@@ -117,13 +122,21 @@ impl Skeleton<'_> {
         if plan.energy {
             self.file.create_group("history/energy")?;
         }
+        let in_space = plan.face.in_space;
         for column in columns::history(plan.energy) {
             let (name, rows) = (format!("history/{}", column.name), plan.history_rows);
+            let vector = in_space && matches!(column.value, Value::Along(_));
             let set = match column.value {
                 Value::Real(_) => self.growing::<f64>(&name, rows, &[])?,
+                Value::Along(_) if vector => self.growing::<f64>(&name, rows, &[2])?,
+                Value::Along(_) => self.growing::<f64>(&name, rows, &[])?,
                 Value::Count(_) => self.growing::<i64>(&name, rows, &[])?,
             };
-            self.describe(set, (column.units, column.long_name), "history", &["time"]);
+            let scales: &[&str] = if vector { &["time", "direction"] } else { &["time"] };
+            self.describe(set, about((column.units, column.long_name), in_space), "history", scales);
+        }
+        if in_space {
+            self.names("history", Components::Along, 3)?;
         }
         Ok(())
     }
@@ -131,14 +144,43 @@ impl Skeleton<'_> {
     fn interface(&mut self, plan: &Plan) -> hdf5::Result<()> {
         const GROUP: &str = "interface";
         self.file.create_group(GROUP)?;
-        let (rows, nodes) = (plan.interface_rows, plan.interface_x.len());
-        for field in INTERFACE {
-            let set = self.growing::<f64>(&format!("{GROUP}/{}", field.name), rows, &[nodes])?;
-            self.describe(set, (field.units, field.long_name), GROUP, &["time", "x"]);
+        let (rows, nodes, axes) = (plan.interface_rows, plan.face.nodes(), plan.face.axes());
+        let node = if plan.face.in_space { "node" } else { "x" };
+        for field in columns::interface(axes) {
+            let components = field.components.names(axes).len();
+            let (row, scales): (&[usize], &[&str]) = match components {
+                0 => (&[nodes], &["time", node]),
+                _ => (&[nodes, components], &["time", node, field.components.scale()]),
+            };
+            let set = self.growing::<f64>(&format!("{GROUP}/{}", field.name), rows, row)?;
+            self.describe(set, about((field.units, field.long_name), plan.face.in_space), GROUP, scales);
         }
         self.time(GROUP, rows)?;
-        let about = ("m", "undeformed coordinate along the contact face");
-        self.fixed((GROUP, "x"), &plan.interface_x, about, &[("x", nodes)])
+        if !plan.face.in_space {
+            let about = ("m", "undeformed coordinate along the contact face");
+            return self.fixed((GROUP, "x"), &plan.face.coordinates, about, &[("x", nodes)]);
+        }
+        let about = ("m", "undeformed coordinates along the contact face");
+        self.fixed((GROUP, "coordinates"), &plan.face.coordinates, about, &[("node", nodes), ("direction", 2)])?;
+        if let (Some(made), false) = (self.made.last(), plan.face.grid.is_empty()) {
+            let grid: Vec<i64> = plan.face.grid.iter().map(|&count| count as i64).collect();
+            made.set.new_attr::<i64>().shape(grid.len()).create("grid")?.write_raw(&grid)?;
+        }
+        let indices: Vec<i64> = (0..nodes as i64).collect();
+        self.fixed((GROUP, "node"), &indices, ("1", "index of a node"), &[("node", nodes)])?;
+        self.names(GROUP, Components::Along, axes)?;
+        self.names(GROUP, Components::Axes, axes)
+    }
+
+    /// The names of components, as the scale of their dimension.
+    fn names(&mut self, group: &str, components: Components, axes: usize) -> hdf5::Result<()> {
+        let what = match components {
+            Components::Stress => "component of a stress",
+            Components::Along => "direction along the contact face",
+            _ => "axis",
+        };
+        let names = components.names(axes).iter().map(|name| unicode(name)).collect::<hdf5::Result<Vec<_>>>()?;
+        self.fixed((group, components.scale()), &names, ("1", what), &[(components.scale(), names.len())])
     }
 
     fn bulk(&mut self, plan: &BulkPlan) -> hdf5::Result<()> {
@@ -162,12 +204,8 @@ impl Skeleton<'_> {
             let indices: Vec<i64> = (0..count as i64).collect();
             self.fixed((GROUP, name), &indices, ("1", what), &[(name, count)])?;
         }
-        for (components, what) in [(Components::Axes, "axis"), (Components::Stress, "component of a stress")] {
-            let names = components.names(axes).iter().map(|name| unicode(name)).collect::<hdf5::Result<Vec<_>>>()?;
-            let dimension = (components.scale(), names.len());
-            self.fixed((GROUP, components.scale()), &names, ("1", what), &[dimension])?;
-        }
-        Ok(())
+        self.names(GROUP, Components::Axes, axes)?;
+        self.names(GROUP, Components::Stress, axes)
     }
 
     /// The times of a group's rows.
@@ -181,12 +219,12 @@ impl Skeleton<'_> {
     fn describe(
         &mut self,
         set: Dataset,
-        (units, long_name): (&'static str, &'static str),
+        (units, long_name): (&'static str, impl Into<String>),
         group: &str,
         scales: &[&str],
     ) {
         let scales = scales.iter().map(|scale| format!("{group}/{scale}")).collect();
-        self.made.push(Described { set, units, long_name, scales });
+        self.made.push(Described { set, units, long_name: long_name.into(), scales });
     }
 
     /// A dataset that is written whole, with the scale and the length of each dimension.

@@ -5,7 +5,7 @@ use std::io;
 use std::os::unix::fs::{FileExt, MetadataExt};
 use std::path::{Path, PathBuf};
 
-use super::columns::{self, BULK, INTERFACE};
+use super::columns::{self, BULK};
 use super::{Plan, Status, locate, skeleton};
 use crate::checksum::row_sum;
 use crate::error::{Error, Result};
@@ -77,7 +77,8 @@ pub(super) fn names(table: Table, plan: &Plan) -> Vec<String> {
     match table {
         Table::History => columns::history(plan.energy).map(|column| format!("history/{}", column.name)).collect(),
         Table::Interface => {
-            INTERFACE.iter().map(|field| field.name).chain(["time"]).map(|name| format!("interface/{name}")).collect()
+            let fields = columns::interface(plan.face.axes()).map(|field| field.name);
+            fields.chain(["time"]).map(|name| format!("interface/{name}")).collect()
         }
         Table::Bulk if plan.bulk.is_some() => {
             BULK.iter().map(|field| field.name).chain(["time"]).map(|name| format!("bulk/{name}")).collect()

@@ -144,7 +144,7 @@ fn attributes(
             attribute(label, "Vector", &join);
         }
         (Components::Axes, _) => attribute(label, "Vector", &slab(0, width)),
-        (Components::Stress, _) => {
+        _ => {
             for (index, component) in components.iter().enumerate() {
                 attribute(&format!("{label}_{component}"), "Scalar", &slab(index, 1));
             }

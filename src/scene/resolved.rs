@@ -110,7 +110,8 @@ impl Layer {
     /// hold, and with two sides counted once where they are the same nodes.
     pub fn unknowns(&self) -> usize {
         // The lowest row of nodes is clamped, so that as many rows move as there are cells.
-        let direction = |held: usize| self.spans.iter().enumerate().map(|(axis, span)| span.free(axis == held)).product::<usize>();
+        let direction =
+            |held: usize| self.spans.iter().enumerate().map(|(axis, span)| span.free(axis == held)).product::<usize>();
         (0..=self.spans.len()).map(direction).sum::<usize>() * self.rows
     }
 

@@ -269,7 +269,7 @@ mod tests {
         let material = &scene.materials[0];
         assert_eq!((material.poisson_ratio, material.shear_modulus), (1.0 / 3.0, 568.498));
         assert_eq!((scene.phases[0].approach, scene.phases[1].duration), (Some(1e-3 / 7.0), 1.0 / 0.3));
-        assert_eq!(scene.phases[1].motion, scene::Motion::Velocity(-0.3));
+        assert_eq!(scene.phases[1].motion, scene::Motion::Velocity([-0.3, 0.0].into()));
         let parabola = Setting { indenter: Indenter::Parabola(1.5), ..setting };
         assert_eq!(parabola.scene().unwrap().indenter, scene::Indenter::Parabola { radius: 1.5, centre: 0.5 });
     }

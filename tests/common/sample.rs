@@ -3,7 +3,7 @@
 use std::time::SystemTime;
 
 use mpjr::energy::Energy;
-use mpjr::output::{BulkPlan, HistoryRow, InterfaceFrame, Metadata, Plan};
+use mpjr::output::{Across, BulkPlan, FacePlan, HistoryRow, InterfaceFrame, Metadata, Plan};
 
 /// Nodes of the contact face.
 pub const FACE: usize = 5;
@@ -29,7 +29,7 @@ pub fn plan(rows: usize, bulk_frames: usize) -> Plan {
         phase_names: vec!["indent".into(), "slide".into()],
         energy: true,
         interface_rows: rows,
-        interface_x: (0..FACE).map(|i| i as f64 / 4.0).collect(),
+        face: FacePlan::along_x((0..FACE).map(|i| i as f64 / 4.0).collect()),
         bulk: (bulk_frames > 0).then(|| mesh(6, 4, bulk_frames)),
     }
 }
@@ -67,6 +67,7 @@ pub fn row(i: usize) -> HistoryRow {
         stuck_slip: 18.0 * v,
         newton_iterations: 10 * i,
         traction_oscillation: 17.0 * v,
+        across: Across::default(),
         energy: Energy {
             external_work: 11.0 * v,
             stored: 12.0 * v,
@@ -110,6 +111,7 @@ pub fn frame(i: usize, face: usize) -> InterfaceFrame {
         slip_rate: field(4),
         displacement_x: field(5),
         displacement_z: field(6),
+        displacement: Vec::new(),
     }
 }
 
