@@ -215,7 +215,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         }
         let rise = traction::up::<D>() * descent;
         let motions =
-            behind.at_points(&self.displaced(&tractions)?.0).into_iter().map(|motion| motion + rise).collect();
+            behind.motions(&self.displaced(&tractions)?.0, &tractions).into_iter().map(|motion| motion + rise).collect();
         Ok(Outcome::new(&stage.sites, tractions, (motions, descent), self.laws(stage)))
     }
 

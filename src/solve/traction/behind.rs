@@ -54,7 +54,31 @@ impl<const D: usize> Behind<'_, D> {
 
     /// The motion of the points under tractions, m.
     pub fn moves(&self, tractions: &[SVector<f64, D>]) -> Result<Vec<SVector<f64, D>>> {
-        Ok(self.at_points(&self.displacements(&self.forces(tractions))?))
+        Ok(self.motions(&self.displacements(&self.forces(tractions))?, tractions))
+    }
+
+    /// What displacements of the nodes are at the points under tractions, with what gives way where one direction is held.
+    pub fn motions(&self, u: &[f64], tractions: &[SVector<f64, D>]) -> Vec<SVector<f64, D>> {
+        let given = |(i, (motion, t)): (usize, (SVector<f64, D>, &SVector<f64, D>))| match self.give(i) {
+            Some(give) => motion + give.component_mul(t),
+            None => motion,
+        };
+        self.at_points(u).into_iter().zip(tractions).enumerate().map(given).collect()
+    }
+
+    /// Where one direction along the face is held and another is not, as on a roller, friction shares its bound between them, and
+    /// what sticks says nothing of its share along the held one. There the contact gives way by a trifle beside the body's own
+    /// compliance, m/Pa by component: the share is none unless the indenter slips that way.
+    fn give(&self, i: usize) -> Option<SVector<f64, D>> {
+        const TRIFLE: f64 = 1e-6;
+        let [(node, _)] = self.interface.points().shares(i) else { return None };
+        let held = |component: usize| self.compliance.is_held(D * node + component);
+        let free = (0..D - 1).find(|&component| !held(component))?;
+        (0..D - 1).any(held).then(|| {
+            let own = self.compliance.block(*node, *node)[(free, free)];
+            let give = TRIFLE * own * self.interface.points().all()[i].weight / self.secant;
+            SVector::from_fn(|component, _| if component + 1 < D && held(component) { give } else { 0.0 })
+        })
     }
 
     /// What displacements of the nodes are at the points.
@@ -87,7 +111,11 @@ impl<const D: usize> Behind<'_, D> {
                 })
                 .sum(),
         };
-        rows.iter().map(&mut of_point).collect()
+        let with_give = |i: &usize| match self.give(j).filter(|_| *i == j) {
+            Some(give) => of_point(i) + SMatrix::from_diagonal(&give),
+            None => of_point(i),
+        };
+        rows.iter().map(with_give).collect()
     }
 
     /// rho of a point: 1 over the geometric mean of what the body answers the point's own traction with and what it answers
