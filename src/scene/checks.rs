@@ -105,13 +105,16 @@ fn in_space(scene: &Scene) -> Check {
     Ok(())
 }
 
-/// PETSc counts unknowns and matrix entries, about 18 to a row, with 32 bits; of a layer that repeats in all directions it sees
-/// the face alone.
+/// PETSc counts unknowns and matrix entries, about 18 to a row, with 32 bits; of a layer in space that repeats in all directions it
+/// sees the face alone.
 fn size(layer: &Layer, strategy: Strategy) -> Check {
     const MOST: f64 = 1e8;
-    let rows = if layer.is_periodic() && strategy != Strategy::Monolithic { 0 } else { layer.rows };
-    let counts: Vec<usize> = layer.spans.iter().map(|span| span.cells).chain([rows]).collect();
-    let unknowns = counts.iter().map(|count| *count as f64 + 1.0).product::<f64>() * counts.len() as f64;
+    let in_space = layer.spans.len() > 1;
+    let face_alone = in_space && layer.is_periodic() && strategy != Strategy::Monolithic;
+    let rows = (!face_alone).then_some(layer.rows);
+    let counts: Vec<usize> = layer.spans.iter().map(|span| span.cells).chain(rows).collect();
+    let components = layer.spans.len() as f64 + 1.0;
+    let unknowns = counts.iter().map(|count| *count as f64 + 1.0).product::<f64>() * components;
     if unknowns > MOST {
         let counts = counts.iter().map(usize::to_string).collect::<Vec<_>>().join(" x ");
         let reason = format!("{counts} cells make {unknowns:.2e} unknowns; at most {MOST:e} can be solved for");

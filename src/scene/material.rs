@@ -64,7 +64,7 @@ pub(super) fn loading(phases: &[Phase]) -> Option<Loading> {
 fn ramps_of(phase: &Phase, start: f64) -> Vec<Ramp> {
     const MOST: usize = 64;
     match phase.motion {
-        Motion::Velocity(velocity) if velocity.norm() == 0.0 => Vec::new(),
+        Motion::Velocity(velocity) if velocity.amax() == 0.0 => Vec::new(),
         Motion::Velocity(velocity) => vec![Ramp { from: start, to: start + phase.duration, rate: velocity.norm() }],
         Motion::Tangential { amplitude, cycles, .. } => {
             let amplitude = amplitude.norm();

@@ -293,7 +293,7 @@ pub enum Motion {
 }
 
 fn is_zero(vector: &Vector2<f64>) -> bool {
-    vector.norm() == 0.0
+    vector.amax() == 0.0
 }
 
 /// How the scene is solved.

@@ -214,8 +214,11 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
             return Ok(stage.trial.clone());
         }
         let rise = traction::up::<D>() * descent;
-        let motions =
-            behind.motions(&self.displaced(&tractions)?.0, &tractions).into_iter().map(|motion| motion + rise).collect();
+        let motions = behind
+            .motions(&self.displaced(&tractions)?.0, &tractions)
+            .into_iter()
+            .map(|motion| motion + rise)
+            .collect();
         Ok(Outcome::new(&stage.sites, tractions, (motions, descent), self.laws(stage)))
     }
 

@@ -89,7 +89,7 @@ pub fn cycles(before: &Before<'_>) -> Option<Warning> {
     let found = before.encounters.course.iter().enumerate().find_map(|(index, phase)| {
         let Motion::Sinusoid { cycles, amplitude, .. } = phase.motion else { return None };
         let steps = phase.duration / step(before.scene, index)? / cycles;
-        (amplitude.norm() != 0.0 && above(FEWEST_STEPS_TO_A_CYCLE, steps)).then_some((index, steps, cycles))
+        (amplitude.amax() != 0.0 && above(FEWEST_STEPS_TO_A_CYCLE, steps)).then_some((index, steps, cycles))
     });
     let (index, steps, cycles) = found?;
     let text = format!(

@@ -39,8 +39,8 @@ impl After<'_> {
         rows.filter_map(|rows| {
             let index = rows.first()?.phase;
             let slides = match self.scene.phases.get(index)?.motion {
-                Motion::Velocity(velocity) => velocity.norm() != 0.0,
-                Motion::Tangential { amplitude, .. } => amplitude.norm() != 0.0,
+                Motion::Velocity(velocity) => velocity.amax() != 0.0,
+                Motion::Tangential { amplitude, .. } => amplitude.amax() != 0.0,
             };
             slides.then_some((index, rows))
         })

@@ -210,7 +210,7 @@ impl Run {
     /// Of the indenter in the last phase, m/s; none where it does not end at one.
     pub fn velocity(&self) -> Option<f64> {
         match self.scene.phases.last()?.motion {
-            Motion::Velocity(velocity) if velocity.norm() != 0.0 => Some(velocity.norm()),
+            Motion::Velocity(velocity) if velocity.amax() != 0.0 => Some(velocity.norm()),
             _ => None,
         }
     }

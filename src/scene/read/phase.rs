@@ -123,7 +123,9 @@ fn duration(section: &Section, motion: Motion) -> Result<f64> {
     match (duration, distance, motion) {
         (Some(_), Some(_), _) => Err(section.error("distance", "give distance or duration, not both")),
         (Some(duration), None, _) => Ok(duration),
-        (None, Some(distance), Motion::Velocity(velocity)) if velocity.norm() != 0.0 => Ok(distance / velocity.norm()),
+        (None, Some(distance), Motion::Velocity(velocity)) if velocity != Vector2::zeros() => {
+            Ok(distance / velocity.x.hypot(velocity.y))
+        }
         (None, Some(_), _) => Err(section.error("distance", "needs a velocity other than 0, or give duration instead")),
         (None, None, _) => Err(section.missing("duration", "it in s, or velocity and distance")),
     }
