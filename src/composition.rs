@@ -22,15 +22,16 @@ use crate::element::mpjr::Quadrature;
 use crate::error::{Error, Result};
 use crate::friction::{Coefficient, Coulomb, CoulombTanh, ElasticSlip, Law, Strength};
 use crate::interface::{Interface, Laws};
-use crate::loading::{self, Adaptive, Motion, Phase, Placement};
+use crate::loading::{self, Adaptive, DIRECTIONS, Motion, Mount, Phase, Placement};
 use crate::mesh::Source;
 use crate::parallel::{agree, share_numbers};
 use crate::petsc::{Integrator, Linear, Matrix, Search, Settings, Vector};
 use crate::profile::{Extruded, Profile, Surface};
 use crate::scene::{self, Scene, Stepping, When};
 use crate::solve::{
-    Body, Compliance, Condensed, Following, Inside, Interior, LARGE_FACE, LARGE_PERIODIC_FACE, Layered, MAX_NEWTON,
-    Monolithic, PeriodicColumn, Relaxation, Relaxations, Remembering, Response, Solid, Sparse, TransientProblem,
+    Body, Compliance, Condensed, Following, Freedom, Inside, Interior, LARGE_FACE, LARGE_PERIODIC_FACE, Layered,
+    MAX_NEWTON, Monolithic, PeriodicColumn, Relaxation, Relaxations, Remembering, Response, Solid, Sparse,
+    TransientProblem,
 };
 
 use body::Materials;
@@ -265,13 +266,15 @@ fn condensed<const D: usize, R: Response<D> + 'static>(
     };
     // The tractions of the points, on rank 0.
     let points = if u.local_len() > 0 { interface.points().count() } else { 0 };
-    let height = scene.is_loaded().then_some(height);
-    let last = usize::from(height.is_some() && points > 0);
+    let mounts = mounts::<D>(scene);
+    let freedom = Freedom { directions: [scene.is_loaded(), mounts[1].is_some(), mounts[2].is_some()], height };
+    let last = if points > 0 { freedom.unknowns() } else { 0 };
     let tractions = Vector::new(comm, D * points + last)?;
     let mut tangent = Matrix::shell(comm, tractions.local_len())?;
     let settings = Settings { linear, max_newton: MAX_NEWTON, search: Search::Own };
     let integrator = Integrator::new(comm, settings, &mut tangent)?;
-    let strategy = Box::new(Condensed::new(comm, interface, response, &u, (scene.solver.tolerance, height))?);
+    let told = (scene.solver.tolerance, freedom);
+    let strategy = Box::new(Condensed::new(comm, (interface, mounts), response, &u, told)?);
     Ok(Strategy { strategy, tangent, u: tractions, integrator })
 }
 
@@ -314,6 +317,16 @@ fn friction(friction: &scene::Friction) -> Result<Box<dyn Law>> {
         scene::Law::CoulombElasticSlip { elastic_slip } => Box::new(ElasticSlip { strength, elastic_slip }),
         scene::Law::Coulomb => Box::new(Coulomb { strength }),
     })
+}
+
+/// Of each direction that there is; the tangential one is the same along x and y.
+fn mounts<const D: usize>(scene: &Scene) -> [Option<Mount>; DIRECTIONS] {
+    let mount = |end: scene::MountEnd| {
+        let scene::MountEnd { stiffness, damping, mass, load } = end;
+        Mount { stiffness, damping, mass, load: load.unwrap_or(0.0) }
+    };
+    let [normal, tangential] = scene.mount.map_or([None; 2], |mount| mount.directions()).map(|end| end.map(mount));
+    [normal, tangential, tangential.filter(|_| D > 2)]
 }
 
 fn quadrature(quadrature: scene::Quadrature) -> Quadrature {

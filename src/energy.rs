@@ -1,7 +1,7 @@
 //! The energy balance of a run.
 //!
 //! ```text
-//! work of the indenter = stored + dissipated in the arms + dissipated by friction + penalty + imbalance
+//! work of what moves the indenter = stored + dissipated in the arms + dissipated by friction + penalty + mounts + imbalance
 //! ```
 //!
 //! Each term is computed for itself, so that the imbalance says how well the steps resolve the history. The contact forces
@@ -14,7 +14,7 @@
 /// The energy balance, J/m, cumulative from t = 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Energy {
-    /// Supplied by the indenter: integral of p (dD - dh) + q.V dt over the face.
+    /// Supplied by the indenter: integral of p (dD - dh) + q.V dt over the face; by the far end and the dead load of a mount.
     pub external_work: f64,
     /// Stored in the springs of the layer.
     pub stored: f64,
@@ -24,8 +24,21 @@ pub struct Energy {
     pub friction_dissipation: f64,
     /// Stored in the penalty.
     pub penalty: f64,
+    /// In the mounts.
+    pub mounts: MountEnergy,
     /// What the others leave over of the work.
     pub imbalance: f64,
+}
+
+/// In the mounts, J/m.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct MountEnergy {
+    /// Stored in their springs.
+    pub spring: f64,
+    /// Dissipated in their dashpots since t = 0.
+    pub dashpot: f64,
+    /// Of their masses.
+    pub kinetic: f64,
 }
 
 /// The share of the body, J/m.
@@ -46,12 +59,15 @@ pub struct FaceEnergy {
     pub friction: f64,
     /// In the penalty.
     pub penalty: f64,
+    /// In the mounts.
+    pub mounts: MountEnergy,
 }
 
 impl Energy {
     /// The balance of the two shares.
     pub fn new(face: FaceEnergy, body: BodyEnergy) -> Self {
-        let FaceEnergy { work, friction, penalty } = face;
+        let FaceEnergy { work, friction, penalty, mounts } = face;
+        let MountEnergy { spring, dashpot, kinetic } = mounts;
         let BodyEnergy { stored, dissipated } = body;
         Self {
             external_work: work,
@@ -59,7 +75,8 @@ impl Energy {
             viscoelastic_dissipation: dissipated,
             friction_dissipation: friction,
             penalty,
-            imbalance: work - stored - dissipated - friction - penalty,
+            mounts,
+            imbalance: work - stored - dissipated - friction - penalty - spring - dashpot - kinetic,
         }
     }
 }

@@ -17,9 +17,9 @@ use nalgebra::{SVector, Vector2};
 use crate::element::mpjr::Quadrature;
 use crate::error::{Error, Result};
 use crate::friction::{Circumstances, Lasting, Law};
-use crate::loading::Placement;
+use crate::loading::{DIRECTIONS, Placement};
 use crate::mesh;
-use crate::profile::Surface;
+use crate::profile::{Height, Surface};
 use crate::snapshot::Snapshot;
 
 pub use displaced::{Residual, Tangent, Trial};
@@ -178,6 +178,14 @@ impl<const D: usize> Interface<D> {
         self.points.place(self.laws.profile.as_ref(), placement)
     }
 
+    /// The profile over each point with the indenter at another place, `sliding`, m.
+    ///
+    /// # Errors
+    /// As for [`Self::place`].
+    pub fn heights_at(&self, sliding: Vector2<f64>) -> Result<Vec<Height>> {
+        self.points.heights_at(self.laws.profile.as_ref(), sliding)
+    }
+
     /// The vertical clearance over a point where the indenter was placed last, c, m.
     pub fn clearance(&self, i: usize, approach: f64) -> f64 {
         self.points.heights()[i].height - approach - self.points.all()[i].place[D - 1]
@@ -190,7 +198,7 @@ impl<const D: usize> Interface<D> {
     pub fn commit(&mut self, placement: Placement, states: Vec<State<D>>) -> Result<()> {
         self.place(placement)?;
         self.check_friction(placement.dt, &states)?;
-        (self.accepted, self.place) = (states, Placement { dt: 0.0, ..placement });
+        (self.accepted, self.place) = (states, Placement { dt: 0.0, supports: [None; DIRECTIONS], ..placement });
         Ok(())
     }
 
@@ -295,8 +303,9 @@ impl<const D: usize> Interface<D> {
         let mut list = Vec::with_capacity(State::<D>::NUMBERS * self.accepted.len());
         self.accepted.iter().for_each(|state| state.write(&mut list));
         snapshot.put("face-states", list);
-        let Placement { approach, sliding, sliding_rate, approach_rate, .. } = self.place;
+        let Placement { approach, sliding, sliding_rate, approach_rate, far, .. } = self.place;
         snapshot.put("face", vec![approach, sliding.x, sliding.y, sliding_rate.x, sliding_rate.y, approach_rate]);
+        snapshot.put("mounts", far.to_vec());
     }
 
     /// Takes the accepted state from a snapshot.
@@ -306,7 +315,8 @@ impl<const D: usize> Interface<D> {
         self.accepted = list.chunks_exact(State::<D>::NUMBERS).map(State::read).collect();
         let [approach, x, y, v_x, v_y, approach_rate] = snapshot.numbers("face")?;
         let (sliding, sliding_rate) = (Vector2::new(x, y), Vector2::new(v_x, v_y));
-        self.place = Placement { approach, sliding, sliding_rate, approach_rate, ..Placement::default() };
+        let far = snapshot.numbers("mounts")?;
+        self.place = Placement { approach, sliding, sliding_rate, approach_rate, far, ..Placement::default() };
         Ok(())
     }
 }

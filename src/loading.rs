@@ -1,10 +1,17 @@
 //! The loading history: where the indenter is at a given time of a given phase.
 
+mod mount;
+
 use std::f64::consts::PI;
 
 use nalgebra::{SVector, Vector2};
 
-/// The indenter's prescribed motion over one attempted step.
+pub use mount::{Mount, Support, Way};
+
+/// How many directions the indenter has: the approach, and the sliding along x and y.
+pub const DIRECTIONS: usize = 3;
+
+/// Where the indenter is at the end of one attempted step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Placement {
     /// Normal approach D at the end of the step, m.
@@ -19,14 +26,29 @@ pub struct Placement {
     pub dt: f64,
     /// Slip rates, m/s, that are too close to tell apart by displacements over the step.
     pub resolution: f64,
-    /// The normal force that is held at the end of the step, N/m; the approach is then what that takes.
-    pub force: Option<f64>,
+    /// What holds the indenter in each direction in which its place is not given: the place is then about where it will be.
+    pub supports: [Option<Support>; 3],
+    /// Where the far ends of mounts are in each direction, m; the indenter itself without one.
+    pub far: [f64; 3],
 }
 
 impl Placement {
+    /// The way to `next` in each direction.
+    pub fn ways(&self, next: &Self) -> [Way; DIRECTIONS] {
+        let place = |at: &Self| [at.approach, at.sliding.x, at.sliding.y];
+        let (before, after) = (place(self), place(next));
+        let rates = [self.approach_rate, self.sliding_rate.x, self.sliding_rate.y];
+        std::array::from_fn(|i| Way {
+            far: [self.far[i], next.far[i]],
+            near: [before[i], after[i]],
+            rate: rates[i],
+            dt: next.dt,
+        })
+    }
+
     /// Whether the indenter was told not to move in the step.
     pub fn is_still(&self) -> bool {
-        self.force.is_none() && self.sliding_rate.norm() == 0.0 && self.approach_rate == 0.0
+        self.supports == [None; DIRECTIONS] && self.sliding_rate.norm() == 0.0 && self.approach_rate == 0.0
     }
 }
 
@@ -179,10 +201,19 @@ impl Phase {
         let fraction = (local / self.duration).min(1.0);
         let approach = from + (to - from) * fraction;
         let approach_rate = (to - from) / self.duration;
-        let force = self.force.map(|[from, to]| from + (to - from) * fraction);
+        let force = self.force.map(|[from, to]| Support::force(from + (to - from) * fraction));
         let [gone, sliding_rate] = self.motion.way(local, dt, self.duration);
         let sliding = self.sliding + gone;
-        Placement { approach, sliding, sliding_rate, approach_rate, dt, resolution: 0.0, force }
+        Placement {
+            approach,
+            sliding,
+            sliding_rate,
+            approach_rate,
+            dt,
+            resolution: 0.0,
+            supports: [force, None, None],
+            far: [approach, sliding.x, sliding.y],
+        }
     }
 
     /// The velocities of approach and of sliding at the time `t`, m/s.

@@ -90,7 +90,14 @@ pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
         stuck_slip: totals.stuck_slip,
         traction_oscillation: totals.traction_oscillation,
         newton_iterations: report.newton,
-        across: Across { sliding: sliding.y, tangential_force: shear.y, hysteretic_force: hysteretic.y },
+        across: Across {
+            sliding: sliding.y,
+            tangential_force: shear.y,
+            hysteretic_force: hysteretic.y,
+            mount_tangential: placement.far[2],
+        },
+        mount_normal: placement.far[0],
+        mount_tangential: placement.far[1],
         energy,
     };
     row.not_finite().map_or(Ok(row), |name| Err(not_finite("history", name, report.time)))

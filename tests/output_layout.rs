@@ -103,11 +103,11 @@ fn layout_is_that_of_the_contract() {
     let mut expected: Vec<(String, Vec<usize>, TypeDescriptor, &str)> = Vec::new();
     for (names, units) in [
         ("time", "s"),
-        ("approach sliding max_penetration stuck_slip", "m"),
+        ("approach sliding max_penetration stuck_slip mount_normal mount_tangential", "m"),
         ("normal_force tangential_force hysteretic_force", "N/m"),
         ("contact_fraction stick_fraction traction_oscillation", "1"),
         ("energy/external_work energy/stored energy/viscoelastic_dissipation energy/friction_dissipation", "J/m"),
-        ("energy/penalty energy/imbalance", "J/m"),
+        ("energy/penalty energy/mount_spring energy/mount_dashpot energy/kinetic energy/imbalance", "J/m"),
     ] {
         expected.extend(names.split(' ').map(|name| (format!("/history/{name}"), vec![10], float.clone(), units)));
     }
@@ -200,7 +200,7 @@ fn a_run_that_is_not_finished_is_labelled_stopped_and_has_row_0() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("run.h5");
     let mut plan = sample::plan(10, 0);
-    plan.energy = false;
+    plan.extra.energy = false;
     let recorder = Recorder::create(&path, &sample::metadata(), plan, &HistoryRow::default()).unwrap();
     let results = Results::open(&path).unwrap();
     assert_eq!(results.history("time").unwrap(), [0.0]);

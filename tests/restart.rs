@@ -145,11 +145,16 @@ fn a_signal_to_one_rank_stops_all() {
     let directory = tempfile::tempdir().unwrap();
     let elastic_slip = "friction={law=\"coulomb_elastic_slip\",coefficient=0.2,elastic_slip=1e-6}";
     let exact = ["--set", "friction={law=\"coulomb\",coefficient=0.2}", "--set", "contact={}"];
+    let springs =
+        "mount={normal={stiffness=1e4,damping=10.0,load=0.01},tangential={stiffness=50.0,damping=1.0,mass=0.5}}";
+    let weakening = "friction={law=\"coulomb\",coefficient=\"0.2 + 0.05*exp(-v/0.1) + 0.05*exp(-s/0.02)\"}";
+    let mounted = ["--set", weakening, "--set", "contact={}", "--set", springs];
     let gauss = ["--set", elastic_slip, "--set", "contact.quadrature=gauss"];
     for (material, solver, within, set) in [
         (ratio(), "", 0.0, &[][..]),
         (bulk(), "", 0.0, &exact),
         (ratio(), "", 0.0, &gauss),
+        (ratio(), "", 0.0, &mounted),
         (ratio(), "", 0.0, &["--set", "phase.slide.normal_force=0.3"]),
         (bulk(), "tolerance = 1e-13\nstrategy = \"monolithic\"", 1e-10, &[]),
     ] {

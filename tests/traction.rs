@@ -13,11 +13,16 @@ use mpi_cases::Case;
 use mpjr::expression::Expression;
 use mpjr::friction::{Coefficient, Coulomb, CoulombTanh, ElasticSlip, Law, Strength, VARIABLES};
 use mpjr::interface::State;
-use mpjr::solve::traction::{Factor, Laws, Moduli, Operator, Outcome, Site, product, settle};
-use nalgebra::{DMatrix, SMatrix, SVector};
+use mpjr::loading::Support;
+use mpjr::profile::Height;
+use mpjr::solve::traction::{
+    Border, Factor, Held, Laws, Moduli, Operator, Outcome, Site, against, product, settle, shift,
+};
+use nalgebra::{DMatrix, SMatrix, SVector, Vector2};
 
 const CASES: &[Case] = &[
     Case::new("the_linear_system_is_the_derivative", &[1], the_linear_system_is_the_derivative),
+    Case::new("the_borders_are_derivatives", &[1], the_borders_are_derivatives),
     Case::new("the_solution_does_not_depend_on_rho", &[1], the_solution_does_not_depend_on_rho),
     Case::new("a_held_point_has_the_shear_of_its_slip", &[1], a_held_point_has_the_shear_of_its_slip),
 ];
@@ -83,7 +88,7 @@ impl<const D: usize> Face<D> {
 
     fn outcome(&self, tractions: Vec<SVector<f64, D>>, laws: Laws<'_>) -> Outcome<D> {
         let motions = self.moves(&tractions).iter().zip(&self.free).map(|(moved, free)| moved + free).collect();
-        Outcome::new(&self.sites, tractions, (motions, 0.0), laws)
+        Outcome::new(&self.sites, tractions, (motions, SVector::zeros()), laws)
     }
 }
 
@@ -105,7 +110,7 @@ fn all_laws(check: impl Fn(Laws<'_>)) {
     let friction = std::iter::once(None).chain(laws.as_flattened().iter().map(|law| Some(&**law)));
     for friction in friction {
         for penalty in [None, Some(2.0)] {
-            check(Laws { penalty, friction, dt: 0.5, resolution: 0.0, load: None });
+            check(Laws { penalty, friction, dt: 0.5, resolution: 0.0, held: Held::default() });
         }
     }
 }
@@ -139,6 +144,66 @@ fn derivative<const D: usize>() {
             assert!((back - b).norm() < 1e-9, "{laws:?}");
         }
     });
+}
+
+/// An indenter that a force presses down, or a spring, and that a spring pulls along under a curved profile: the bordered product against
+/// central differences of G and of the equations of the indenter, and its inverse.
+fn the_borders_are_derivatives(_: &SimpleCommunicator, _: &Path) {
+    borders::<2>();
+    borders::<3>();
+}
+
+fn borders<const D: usize>() {
+    let profile = |further: Vector2<f64>| {
+        let height = |i: u32| {
+            let [x, y] = [0.3 * f64::from(i) - further.x, 0.1 * f64::from(i * i) - further.y];
+            let gradient = Vector2::new(0.2 * x.cos() * y.cos(), -0.2 * x.sin() * y.sin());
+            Height { height: 0.2 * x.sin() * y.cos(), gradient }
+        };
+        (0..7).map(height).collect::<Vec<_>>()
+    };
+    let spring = Support { force: 0.4, stiffness: 1.7, size: 1.0, inert: false };
+    let along = |normal, x: Option<Support>| [normal, x, x.filter(|_| D > 2)];
+    let force = Some(Support::force(0.9));
+    for supports in [along(force, None), along(None, Some(spring)), along(Some(spring), Some(spring))] {
+        all_laws(|laws| {
+            let laws = Laws { held: Held { supports, profile: Some(&profile) }, ..laws };
+            let mut draw = Draw(5);
+            let face = Face::<D>::new(7, &mut draw);
+            let dt: Vec<SVector<f64, D>> = (0..7).map(|_| draw.vector()).collect();
+            let gone = std::array::from_fn(|i| if supports[i].is_some() { [0.3, -0.2, 0.1][i] } else { 0.0 });
+            let state = |h: f64| {
+                let t: Vec<_> = face.tractions.iter().zip(&dt).map(|(t, dt)| t + dt * h).collect();
+                let shift = shift::<D>(gone) * (h / 0.3);
+                let moved = face.moves(&t).into_iter().zip(&face.free).zip(&face.sites);
+                let motions = moved.map(|((moved, free), site)| moved + free + against(site, &shift)).collect();
+                Outcome::new(&face.sites, t, (motions, shift), laws)
+            };
+            let at = state(0.0);
+            let points = at.linearised(&face.sites);
+            let border = Border::new(&face.sites, (&at, &points), laws.held).unwrap();
+            // kappa is the points' modulus, 0.3.
+            let mut exact = product(&points, &dt, &face.moves(&dt));
+            let rows = border.product(&face.sites, (&dt, gone), &mut exact);
+            let step = 1e-6;
+            let (plus, minus) = (state(step), state(-step));
+            for ((plus, minus), exact) in excesses(&plus).iter().zip(excesses(&minus)).zip(&exact) {
+                let apart = ((plus - minus) / (2.0 * step) - exact).norm();
+                assert!(apart < 1e-7, "{laws:?} {apart:e} {exact}");
+            }
+            let [plus, minus] = [plus, minus].map(|state| state.unbalanced(&face.sites));
+            for i in (0..3).filter(|i| supports[*i].is_some()) {
+                assert!(((plus[i] - minus[i]) / (2.0 * step) - rows[i]).abs() < 1e-6, "{laws:?} {i}");
+            }
+            let factor = Factor::new(points.clone(), &|j, rows| face.column(j, rows)).unwrap();
+            let inverse = |right: &[SVector<f64, D>]| factor.solve(right, |t| Ok(face.moves(t)));
+            let (back, far) = border.solve(&face.sites, (&exact, rows), inverse).unwrap().unwrap();
+            for (back, dt) in back.iter().zip(&dt) {
+                assert!((back - dt).norm() < 1e-8, "{laws:?}");
+            }
+            assert!((0..3).all(|i| (far[i] - gone[i]).abs() < 1e-8), "{laws:?} {far:?} {gone:?}");
+        });
+    }
 }
 
 /// Newton's method ends where the laws hold, whatever rho: in the plane and in space, exact laws too. Pressures and shears of
@@ -177,7 +242,7 @@ fn solution<const D: usize>() {
 /// A point that is held along the face answers with what its law says of the slip, or takes any shear that Coulomb allows.
 fn a_held_point_has_the_shear_of_its_slip(_: &SimpleCommunicator, _: &Path) {
     let law = Coulomb { strength: Strength::constant(0.5) };
-    let laws = Laws { penalty: Some(4.0), friction: Some(&law), dt: 1.0, resolution: 0.0, load: None };
+    let laws = Laws { penalty: Some(4.0), friction: Some(&law), dt: 1.0, resolution: 0.0, held: Held::default() };
     let site = |slip: f64| Site {
         normal: SVector::from([0.0, 1.0]),
         weight: 1.0,

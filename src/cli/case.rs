@@ -14,7 +14,9 @@ use super::summary::Outcome;
 use crate::composition::{self, Compliances, Meshed, Outline, Problem};
 use crate::error::{Error, Result};
 use crate::loading::Phase;
-use crate::output::{BulkPlan, HistoryRow, Metadata, Plan, Recorder, Status, checkpoint, clock, reader::Results};
+use crate::output::{
+    BulkPlan, Extra, HistoryRow, Metadata, Plan, Recorder, Status, checkpoint, clock, reader::Results,
+};
 use crate::parallel::agree;
 use crate::petsc::Session;
 use crate::scene::Scene;
@@ -162,6 +164,12 @@ fn open(
     Ok(recorder)
 }
 
+/// The columns that the history of a scene has besides those that all have.
+pub fn extra(scene: &Scene) -> Extra {
+    let mounts = scene.mount.map_or([false; 2], |mount| mount.directions().map(|end| end.is_some()));
+    Extra { energy: scene.output.energy, mounts }
+}
+
 fn plan(scene: &Scene, mesh: &Meshed, phases: &[Phase]) -> Plan {
     let frames = phases.iter().flat_map(|phase| &phase.steps).filter(|target| target.bulk_output).count();
     let steps = scene.steps() + frames;
@@ -170,7 +178,7 @@ fn plan(scene: &Scene, mesh: &Meshed, phases: &[Phase]) -> Plan {
         // A step that is cut adds rows.
         history_rows: 1 + steps + steps / 8,
         phase_names: phases.iter().map(|phase| phase.name.clone()).collect(),
-        energy: scene.output.energy,
+        extra: extra(scene),
         interface_rows: steps.checked_div(scene.output.interface_every).map_or(ends, |rows| rows + ends),
         face: mesh.face(),
         bulk: bulk_plan(scene, mesh, phases),

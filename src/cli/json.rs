@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::case::Done;
+use super::case::{Done, extra};
 use super::summary::Outcome;
 use crate::composition::{Estimate, Outline};
 use crate::output::is_vector;
@@ -21,7 +21,7 @@ pub fn outcome(scene: &Scene, done: &Done, out: &Path) -> Value {
         "error": result.as_ref().err().map(ToString::to_string),
         "results": out.display().to_string(),
         "warnings": warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
-        "last": last.values(scene.output.energy)
+        "last": last.values(extra(scene))
             .map(|(name, numbers)| (name.to_owned(), number(scene, name, numbers)))
             .collect::<serde_json::Map<_, Value>>(),
         "steps": counts.steps,

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::case::Done;
 use super::material;
 use crate::composition::{self, Estimate, Form, Outline, Stretch};
-use crate::energy::Energy;
+use crate::energy::{Energy, MountEnergy};
 use crate::output::Status;
 use crate::petsc;
 use crate::scene::{
@@ -37,6 +37,11 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
     match &scene.friction {
         Some(friction) => yes.push(friction_law(friction)),
         None => no.push("friction (symmetric solver)".to_owned()),
+    }
+    if let Some(mount) = &scene.mount {
+        let names = ["normal", "tangential"].into_iter().zip(mount.directions());
+        let names: Vec<&str> = names.filter_map(|(name, end)| end.map(|_| name)).collect();
+        yes.push(format!("mount: {}", names.join(" and ")));
     }
     yes.push(format!(
         "contact: {}, {} quadrature",
@@ -228,10 +233,16 @@ pub fn outcome(scene: &Scene, done: &Done) -> String {
 
 /// The energy balance as a sum.
 fn balance(energy: &Energy) -> String {
-    let Energy { external_work, stored, viscoelastic_dissipation, friction_dissipation, penalty, imbalance } = energy;
+    let Energy { external_work, stored, viscoelastic_dissipation, friction_dissipation, penalty, mounts, imbalance } =
+        energy;
+    let MountEnergy { spring, dashpot, kinetic } = mounts;
+    let held = match *mounts == MountEnergy::default() {
+        true => String::new(),
+        false => format!(" + mounts {:.3e}", spring + dashpot + kinetic),
+    };
     format!(
         "work {external_work:.3e} = stored {stored:.3e} + arms {viscoelastic_dissipation:.3e} + friction \
-         {friction_dissipation:.3e}\n{:15}+ penalty {penalty:.3e} + imbalance {imbalance:.3e} J/m",
+         {friction_dissipation:.3e}\n{:15}+ penalty {penalty:.3e}{held} + imbalance {imbalance:.3e} J/m",
         ""
     )
 }

@@ -95,18 +95,32 @@ impl Strength {
     /// How steeply B falls with the slip at most, Pa/m, at a pressure and after a slid distance, as far as samples of the rate
     /// tell; 0 where it does not.
     pub fn steepest_fall(&self, at: Circumstances) -> f64 {
+        let falls = self.samples(at).map(|(_, f)| -f.slope).filter(|fall| fall.is_finite());
+        at.pressure * falls.fold(0.0, f64::max)
+    }
+
+    /// The rate at which f is least, m/s, as far as samples tell; 0 where it does not change.
+    pub fn weakest(&self, at: Circumstances) -> f64 {
+        let known = self.samples(at).filter(|(_, f)| f.value >= 0.0);
+        known.min_by(|(_, f), (_, g)| f.value.total_cmp(&g.value)).map_or(0.0, |(rate, _)| rate)
+    }
+
+    /// f along the slip at rest and at rates over many decades; none where it does not change with the slip.
+    fn samples(&self, at: Circumstances) -> impl Iterator<Item = (f64, Dual)> {
         /// Decades of the rate, m/s, and samples in each.
         const DECADES: [i32; 2] = [-12, 3];
         const SAMPLES: i32 = 8;
-        let Coefficient::Formula(formula) = &self.coefficient else { return 0.0 };
-        if !self.varies() {
-            return 0.0;
-        }
-        let powers = DECADES[0] * SAMPLES..=DECADES[1] * SAMPLES;
-        let rates = powers.map(|i| 10f64.powf(f64::from(i) / f64::from(SAMPLES)));
-        let fall = |rate: f64| -formula.at(&along(at, Lasting { length: rate * at.dt, by_slip: 1.0 })).slope;
-        let falls = std::iter::once(0.0).chain(rates).map(fall).filter(|fall| fall.is_finite());
-        at.pressure * falls.fold(0.0, f64::max)
+        let formula = match &self.coefficient {
+            Coefficient::Formula(formula) if self.varies() => Some(formula),
+            _ => None,
+        };
+        let rates = || {
+            let powers = DECADES[0] * SAMPLES..=DECADES[1] * SAMPLES;
+            std::iter::once(0.0).chain(powers.map(|i| 10f64.powf(f64::from(i) / f64::from(SAMPLES))))
+        };
+        let slip = move |rate: f64| Lasting { length: rate * at.dt, by_slip: 1.0 };
+        let of = move |formula: &Arc<Expression>, rate: f64| (rate, formula.at(&along(at, slip(rate))));
+        formula.into_iter().flat_map(move |formula| rates().map(move |rate| of(formula, rate)))
     }
 
     /// What is wrong with the coefficient of a point that slips; none where it is a finite number, at least 0.

@@ -4,6 +4,7 @@
 //!
 //! ```text
 //! work of the indenter:  integral of p (n_z (dD - dh) + dg) + q.V dt, dg the change of the gap where there is one
+//! a mount's far end:     its force times what that moves, instead of the part of the indenter that it holds
 //! friction:              integral of q.d, d the slip that dissipates; at least 0
 //! penalty:               integral of 1/2 p o, and what elastic slip has stored
 //! ```
@@ -15,9 +16,9 @@
 use nalgebra::SVector;
 
 use super::{Interface, State};
-use crate::energy::FaceEnergy;
+use crate::energy::{FaceEnergy, MountEnergy};
 use crate::error::Result;
-use crate::loading::Placement;
+use crate::loading::{DIRECTIONS, Mount, Placement, Way};
 use crate::snapshot::Snapshot;
 
 /// The energy that went through the face up to an accepted state, and what of that state the next step needs.
@@ -46,13 +47,13 @@ impl Exchange {
     pub fn advance<const D: usize>(
         &mut self,
         interface: &mut Interface<D>,
-        place: Placement,
+        (place, mounts): (Placement, &[Option<Mount>; DIRECTIONS]),
         states: &[State<D>],
     ) -> Result<()> {
         interface.place(place)?;
         let dt = place.dt;
         let way = place.way();
-        let mut penalty = 0.0;
+        let (mut penalty, mut work, mut shears, mut pressing) = (0.0, 0.0, SVector::<f64, D>::zeros(), 0.0);
         let heights = heights(interface);
         for (i, (before, after)) in interface.states().iter().zip(states).enumerate() {
             let point = &interface.points().all()[i];
@@ -66,25 +67,49 @@ impl Exchange {
             // What friction is not let give back, the indenter is not let take.
             let taken = shear.dot(&lost).max(0.0);
             self.energy.friction += point.weight * taken;
-            self.energy.work += point.weight * (pressure * closed + shear.dot(&(way - lost)) + taken);
+            work += point.weight * (pressure * closed + shear.dot(&(way - lost)) + taken);
+            pressing += point.weight * (pressure * point.normal[D - 1] - shear[D - 1]);
+            shears += shear * point.weight;
             penalty += 0.5 * point.weight * after.pressure * after.overlap;
         }
+        let normal = pressing * place.approach_rate * dt;
+        // What the profile's slope meets goes with the first direction along the face: that of a plane, or of both mounts in space.
+        let across = if D > 2 { shears[1] * place.sliding_rate.y * dt } else { 0.0 };
+        self.supply(interface.placement().ways(&place), mounts, [normal, work - normal - across, across]);
         self.heights = heights;
         self.energy.penalty = penalty + self.elastic;
         Ok(())
     }
 
+    /// Adds the work of a step in each direction: of the indenter, or of what moves its mount.
+    fn supply(&mut self, ways: [Way; DIRECTIONS], mounts: &[Option<Mount>; DIRECTIONS], works: [f64; DIRECTIONS]) {
+        let held = &mut self.energy.mounts;
+        (held.spring, held.kinetic) = (0.0, 0.0);
+        for ((way, mount), work) in ways.iter().zip(mounts).zip(works) {
+            let Some(mount) = mount else {
+                self.energy.work += work;
+                continue;
+            };
+            let turnover = mount.turnover(way);
+            self.energy.work += turnover.supplied;
+            held.spring += turnover.stored;
+            held.dashpot += turnover.dissipated;
+            held.kinetic += turnover.kinetic;
+        }
+    }
+
     /// Adds the account to a snapshot.
     pub fn save(&self, snapshot: &mut Snapshot) {
-        let Self { energy: FaceEnergy { work, friction, penalty }, elastic, .. } = self;
-        snapshot.put("face-energy", vec![*work, *friction, *penalty, *elastic]);
+        let Self { energy: FaceEnergy { work, friction, penalty, mounts }, elastic, .. } = self;
+        let MountEnergy { spring, dashpot, kinetic } = mounts;
+        snapshot.put("face-energy", vec![*work, *friction, *penalty, *elastic, *spring, *dashpot, *kinetic]);
         snapshot.put("face-heights", self.heights.clone());
     }
 
     /// Takes the account from a snapshot.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
-        let [work, friction, penalty, elastic] = snapshot.numbers("face-energy")?;
-        self.energy = FaceEnergy { work, friction, penalty };
+        let [work, friction, penalty, elastic, spring, dashpot, kinetic] = snapshot.numbers("face-energy")?;
+        self.energy = FaceEnergy { work, friction, penalty, mounts: MountEnergy { spring, dashpot, kinetic } };
         self.elastic = elastic;
         snapshot.fill("face-heights", &mut self.heights)
     }

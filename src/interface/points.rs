@@ -100,12 +100,17 @@ impl<const D: usize> Points<D> {
             return Ok(());
         }
         self.placed = None;
-        self.heights.clear();
-        for point in &self.all {
-            self.heights.push(profile.at(point.along() - placement.sliding)?);
-        }
+        self.heights = self.heights_at(profile, placement.sliding)?;
         self.placed = Some(placement.sliding);
         Ok(())
+    }
+
+    /// The profile at the points with the indenter at `sliding`, m.
+    ///
+    /// # Errors
+    /// As for [`Self::place`].
+    pub fn heights_at(&self, profile: &dyn Surface, sliding: Vector2<f64>) -> Result<Vec<Height>> {
+        self.all.iter().map(|point| profile.at(point.along() - sliding)).collect()
     }
 
     /// All of them.

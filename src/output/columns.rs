@@ -34,7 +34,11 @@ pub struct HistoryRow {
     pub newton_iterations: usize,
     /// What vectors have along y.
     pub across: Across,
-    /// The energy balance; recorded only when [`Plan::energy`](super::Plan::energy) is set.
+    /// Where the far end of the normal mount is, m; recorded where there is one.
+    pub mount_normal: f64,
+    /// That of the tangential one.
+    pub mount_tangential: f64,
+    /// The energy balance; recorded where it is asked for.
     pub energy: Energy,
 }
 
@@ -47,6 +51,8 @@ pub struct Across {
     pub tangential_force: f64,
     /// N
     pub hysteretic_force: f64,
+    /// m
+    pub mount_tangential: f64,
 }
 
 /// One row of the fields under `/interface`; every field has one value, or the components of one vector, for each node of the
@@ -107,6 +113,20 @@ const fn count(name: &'static str, long_name: &'static str, value: fn(&mut Histo
     Column { name, units: "1", long_name, value: Value::Count(value) }
 }
 
+/// Which columns a history has besides those that all have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Extra {
+    /// The energy balance.
+    pub energy: bool,
+    /// The far ends of the mounts, normal and tangential, and what they add to the balance.
+    pub mounts: [bool; 2],
+}
+
+impl Extra {
+    /// What all rows can have.
+    pub const ALL: Self = Self { energy: true, mounts: [true; 2] };
+}
+
 /// The columns of `/history`. `time` is the last: the lengths reach the file in this order (see [`super`]).
 #[rustfmt::skip]
 pub(super) const HISTORY: &[Column] = &[
@@ -136,14 +156,32 @@ pub(super) const ENERGY: &[Column] = &[
     real("energy/imbalance", "J/m", "work less stored and dissipated energy", |r| &mut r.energy.imbalance),
 ];
 
+/// Where the far ends of mounts are.
+#[rustfmt::skip]
+const MOUNTS: &[Column] = &[
+    real("mount_normal", "m", "approach of the far end of the normal mount", |r| &mut r.mount_normal),
+    along("mount_tangential", "m", "sliding of the far end of the tangential mount", [|r| &mut r.mount_tangential, |r| &mut r.across.mount_tangential]),
+];
+
+/// What mounts add to the energy balance.
+#[rustfmt::skip]
+const MOUNT_ENERGY: &[Column] = &[
+    real("energy/mount_spring", "J/m", "energy stored in the springs of the mounts", |r| &mut r.energy.mounts.spring),
+    real("energy/mount_dashpot", "J/m", "energy dissipated in the dashpots of the mounts since t = 0", |r| &mut r.energy.mounts.dashpot),
+    real("energy/kinetic", "J/m", "kinetic energy of the masses of the mounts", |r| &mut r.energy.mounts.kinetic),
+];
+
 /// All history columns of a run, `time` last.
-pub(super) fn history(energy: bool) -> impl Iterator<Item = &'static Column> {
-    ENERGY.iter().filter(move |_| energy).chain(HISTORY)
+pub(super) fn history(Extra { energy, mounts }: Extra) -> impl Iterator<Item = &'static Column> {
+    let mounted = energy && mounts != [false; 2];
+    let ends = MOUNTS.iter().zip(mounts).filter_map(|(column, there)| there.then_some(column));
+    let energies = ENERGY.iter().filter(move |_| energy).chain(MOUNT_ENERGY.iter().filter(move |_| mounted));
+    energies.chain(ends).chain(HISTORY)
 }
 
 /// Whether a column has a component for each direction of the face.
 pub fn is_vector(name: &str) -> bool {
-    HISTORY.iter().any(|column| column.name == name && matches!(column.value, Value::Along(_)))
+    MOUNTS.iter().chain(HISTORY).any(|column| column.name == name && matches!(column.value, Value::Along(_)))
 }
 
 /// Units and words as they are in space, where forces and energies are not per unit thickness.
@@ -158,8 +196,8 @@ pub(super) fn in_space(units: &'static str, long_name: &str) -> (&'static str, S
 
 impl HistoryRow {
     /// The names of the columns, as under `/history`, and its numbers; those of vectors are along x and along y.
-    pub fn values(mut self, energy: bool) -> impl Iterator<Item = (&'static str, [f64; 2])> {
-        history(energy).map(move |column| match column.value {
+    pub fn values(mut self, extra: Extra) -> impl Iterator<Item = (&'static str, [f64; 2])> {
+        history(extra).map(move |column| match column.value {
             Value::Real(of) => (column.name, [*of(&mut self), 0.0]),
             Value::Count(of) => (column.name, [*of(&mut self) as f64, 0.0]),
             Value::Along(of) => (column.name, of.map(|of| *of(&mut self))),
@@ -168,7 +206,7 @@ impl HistoryRow {
 
     /// The first column whose number is not finite.
     pub fn not_finite(self) -> Option<&'static str> {
-        self.values(true).find(|(_, values)| values.iter().any(|value| !value.is_finite())).map(|(name, _)| name)
+        self.values(Extra::ALL).find(|(_, values)| values.iter().any(|value| !value.is_finite())).map(|(name, _)| name)
     }
 }
 

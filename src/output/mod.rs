@@ -44,7 +44,7 @@ mod xdmf;
 
 use std::time::SystemTime;
 
-pub use columns::{Across, HistoryRow, InterfaceFrame, is_vector};
+pub use columns::{Across, Extra, HistoryRow, InterfaceFrame, is_vector};
 pub use recorder::Recorder;
 pub use resume::{Left, intact, left};
 
@@ -104,8 +104,8 @@ pub struct Plan {
     pub history_rows: usize,
     /// Names of the phases.
     pub phase_names: Vec<String>,
-    /// Whether `/history/energy` is recorded.
-    pub energy: bool,
+    /// Which columns the history has besides those that all have.
+    pub extra: Extra,
     /// Rows of the interface fields.
     pub interface_rows: usize,
     /// The nodes of the contact face; m of them.

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use hdf5::types::VarLenUnicode;
 
-use super::HistoryRow;
 use super::columns::{self, BULK, Value};
+use super::{Extra, HistoryRow};
 use crate::error::{Error, Result};
 use crate::input;
 
@@ -91,6 +91,12 @@ impl Results {
         Ok(names.iter().map(ToString::to_string).collect())
     }
 
+    /// Which columns its history has besides those that all have.
+    pub fn extra(&self) -> Extra {
+        let mounts = ["mount_normal", "mount_tangential"].map(|column| self.has(&format!("history/{column}")));
+        Extra { energy: self.has("history/energy/stored"), mounts }
+    }
+
     /// Whether the file has the dataset, such as `history/energy/stored` or `bulk/stress`.
     pub fn has(&self, dataset: &str) -> bool {
         self.file.dataset(dataset).is_ok()
@@ -111,9 +117,9 @@ impl Results {
     }
 
     /// The whole history, with the energies where the run kept them.
-    pub fn rows(&self, energy: bool) -> Result<Vec<HistoryRow>> {
+    pub fn rows(&self, extra: Extra) -> Result<Vec<HistoryRow>> {
         let mut rows = Vec::new();
-        for column in columns::history(energy) {
+        for column in columns::history(extra) {
             let values = self.history(column.name)?;
             rows.resize(values.len(), HistoryRow::default());
             for (row, value) in rows.iter_mut().zip(values) {

@@ -158,7 +158,7 @@ impl Recorder {
         let mut state = self.shared.lock();
         state.check()?;
         state.flush()?;
-        Results::open(state.store.path())?.rows(state.plan.energy)
+        Results::open(state.store.path())?.rows(state.plan.extra)
     }
 
     /// Writes what is left and how the run ended. Without this call the file says "stopped".
@@ -258,7 +258,7 @@ impl State {
         let [mut history, mut interface] = [0_u64; 2];
         for (ahead, mut row) in self.history.iter().copied().enumerate() {
             let directions = self.plan.face.axes() - 1;
-            let values: Vec<Vec<u8>> = columns::history(self.plan.energy)
+            let values: Vec<Vec<u8>> = columns::history(self.plan.extra)
                 .map(|column| match column.value {
                     Value::Real(of) => bytes(&[*of(&mut row)]),
                     Value::Count(of) => (*of(&mut row) as i64).to_ne_bytes().to_vec(),

@@ -41,7 +41,7 @@ pub fn intact(path: &Path, rows: Rows) -> Result<()> {
     let results = Results::open(path)?;
     let bulk = results.has("bulk/time").then(super::BulkPlan::default);
     let face = super::FacePlan { in_space: results.has("interface/coordinates"), ..super::FacePlan::default() };
-    let plan = Plan { energy: results.has("history/energy/stored"), face, bulk, ..Plan::default() };
+    let plan = Plan { extra: results.extra(), face, bulk, ..Plan::default() };
     drop(results);
     Store::reopen(path, &plan, rows).map(|_| ())
 }
@@ -85,7 +85,7 @@ fn append_table(state: &mut State, results: &Results, (table, skip): (Table, usi
     // `time` is the last of its table, and counts the rows that are whole.
     let rows = fields.last().map_or(0, |time| time.rows);
     let counts: Vec<bool> = match table {
-        Table::History => columns::history(plan.energy).map(|column| matches!(column.value, Value::Count(_))).collect(),
+        Table::History => columns::history(plan.extra).map(|column| matches!(column.value, Value::Count(_))).collect(),
         _ => vec![false; names.len()],
     };
     let added = rows.saturating_sub(skip);

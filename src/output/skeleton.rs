@@ -119,11 +119,11 @@ fn root_attributes(file: &hdf5::File, metadata: &Metadata) -> hdf5::Result<()> {
 impl Skeleton<'_> {
     fn history(&mut self, plan: &Plan) -> hdf5::Result<()> {
         self.file.create_group("history")?;
-        if plan.energy {
+        if plan.extra.energy {
             self.file.create_group("history/energy")?;
         }
         let in_space = plan.face.in_space;
-        for column in columns::history(plan.energy) {
+        for column in columns::history(plan.extra) {
             let (name, rows) = (format!("history/{}", column.name), plan.history_rows);
             let vector = in_space && matches!(column.value, Value::Along(_));
             let set = match column.value {

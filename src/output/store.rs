@@ -75,7 +75,7 @@ impl Rows<'_> {
 /// The datasets of a table, named from the root.
 pub(super) fn names(table: Table, plan: &Plan) -> Vec<String> {
     match table {
-        Table::History => columns::history(plan.energy).map(|column| format!("history/{}", column.name)).collect(),
+        Table::History => columns::history(plan.extra).map(|column| format!("history/{}", column.name)).collect(),
         Table::Interface => {
             let fields = columns::interface(plan.face.axes()).map(|field| field.name);
             fields.chain(["time"]).map(|name| format!("interface/{name}")).collect()

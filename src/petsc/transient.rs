@@ -121,6 +121,8 @@ pub trait Implicit {
     fn judge(&mut self, _step: Step, _u: &Vector) -> Result<Judgement> {
         Ok(Judgement::Accept)
     }
+    /// What may help where a step does not converge however short.
+    fn advice(&self) -> &'static str;
     /// Takes note of an accepted step that ends at `u`, from which the next one begins.
     fn accepted(&mut self, accepted: Accepted, u: &mut Vector) -> Result<Next>;
 }
@@ -329,9 +331,10 @@ impl Integrator {
         check(code)?;
         if reason < 0 {
             return Err(Error::Solver(format!(
-                "no convergence in the step to t = {:.6e} s, cut down to {:.3e} s; more steps, friction regularised less \
-                 sharply or a softer penalty may help",
-                context.step.t, context.step.dt
+                "no convergence in the step to t = {:.6e} s, cut down to {:.3e} s; {}",
+                context.step.t,
+                context.step.dt,
+                context.problem.advice()
             )));
         }
         Ok(())

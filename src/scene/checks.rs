@@ -211,10 +211,17 @@ fn adaptive(scene: &Scene) -> Check {
     Ok(())
 }
 
-/// A force is held by the condensed strategy, in planned steps.
+/// A force or a mount holds the indenter by the condensed strategy, in planned steps; not both of them along the approach.
 fn load(scene: &Scene) -> Check {
-    let Some(phase) = scene.phases.iter().find(|phase| phase.normal_force.is_some()) else { return Ok(()) };
-    let key = format!("phase.{}.normal_force", phase.name);
+    let forced = scene.phases.iter().find(|phase| phase.normal_force.is_some());
+    let key = match (forced, &scene.mount) {
+        (Some(phase), _) => format!("phase.{}.normal_force", phase.name),
+        (None, Some(_)) => "mount".to_owned(),
+        (None, None) => return Ok(()),
+    };
+    if forced.is_some() && scene.mount.is_some_and(|mount| mount.normal.is_some()) {
+        return fail(&key, "cannot stand beside mount.normal, whose load is the force; leave one of them out");
+    }
     if scene.solver.strategy == Strategy::Monolithic {
         return fail(&key, "is not held by the strategy \"monolithic\" yet; use \"condensed\"");
     }

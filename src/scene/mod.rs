@@ -10,6 +10,7 @@ mod include;
 mod indenter;
 mod keys;
 mod material;
+mod mount;
 mod overrides;
 mod penalty;
 mod read;
@@ -27,6 +28,7 @@ pub use friction::{Coefficient, Friction, Law};
 pub use include::{Load, include, open};
 pub use indenter::{Detrend, Extend, Indenter, Reading, Rms, Seam};
 pub(crate) use keys::nearest;
+pub use mount::{Mount, MountEnd};
 pub use overrides::{get, set};
 pub use penalty::{added_compliance, penalty_for, penalty_on_mesh, shortest_step};
 pub use read::{from_table, parse, read, read_with};
@@ -49,6 +51,9 @@ pub struct Scene {
     /// The friction law; none = frictionless.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction: Option<Friction>,
+    /// What is between the indenter and what moves it; none = it is moved as it is told.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mount: Option<Mount>,
     /// The loading history, in order; never empty.
     #[serde(rename = "phase")]
     pub phases: Vec<Phase>,

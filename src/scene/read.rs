@@ -5,6 +5,7 @@ mod body;
 mod friction;
 mod indenter;
 pub(super) mod material;
+mod mount;
 pub(super) mod phase;
 
 use std::path::Path;
@@ -80,7 +81,9 @@ pub fn from_table(table: &Table, file: &Path) -> Result<Scene> {
         ("temperature", NO_TEMPERATURE),
         ("reference_temperature", NO_TEMPERATURE),
     ])?;
-    root.only(&["title", "layer", "mesh", "material", "indenter", "contact", "friction", "phase", "solver", "output"])?;
+    root.only(&[
+        "title", "layer", "mesh", "material", "indenter", "contact", "friction", "mount", "phase", "solver", "output",
+    ])?;
     let title = title(&root, file)?;
     let body = body::read(&root, file)?;
     // The history says over which times the materials must hold.
@@ -92,6 +95,7 @@ pub fn from_table(table: &Table, file: &Path) -> Result<Scene> {
         indenter: indenter::read(&root.section("indenter")?)?,
         contact: contact(&root.section("contact")?, &body, &materials, &phases)?,
         friction: root.optional_section("friction")?.as_ref().map(friction::read).transpose()?,
+        mount: root.optional_section("mount")?.as_ref().map(mount::read).transpose()?,
         phases,
         solver: solver(solver_section.as_ref(), preset)?,
         output: output(root.optional_section("output")?.as_ref())?,

@@ -63,9 +63,10 @@ impl Scene {
         self.phases.iter().filter_map(|phase| phase.approach).fold(0.0, f64::max)
     }
 
-    /// Whether a force holds the indenter at any time.
+    /// Whether a force, or a mount, holds the indenter along the approach at any time.
     pub fn is_loaded(&self) -> bool {
         self.phases.iter().any(|phase| phase.normal_force.is_some())
+            || self.mount.is_some_and(|mount| mount.normal.is_some())
     }
 
     /// The same scene up to the end of its first `count` phases, without a title: what the state there depends on; none

@@ -4,7 +4,7 @@ use super::Contact;
 use crate::energy::FaceEnergy;
 use crate::error::{Error, Result};
 use crate::interface::{Exchange, Interface, State};
-use crate::loading::{Phase, Placement};
+use crate::loading::{DIRECTIONS, Mount, Phase, Placement};
 use crate::petsc::Step;
 use crate::snapshot::Snapshot;
 
@@ -22,16 +22,19 @@ pub struct AcceptedFace<const D: usize> {
     dt: f64,
     /// The approach, m, and the normal force, N/m, where the phase began.
     origin: [f64; 2],
+    /// Between what moves the indenter and it, in each direction.
+    mounts: [Option<Mount>; DIRECTIONS],
     /// Only where the energy is asked for.
     exchange: Option<Exchange>,
 }
 
 impl<const D: usize> AcceptedFace<D> {
     /// At rest.
-    pub fn new(interface: Interface<D>) -> Self {
+    pub fn new(interface: Interface<D>, mounts: [Option<Mount>; DIRECTIONS]) -> Self {
         let at_rest = vec![0.0; D * interface.face().count()];
         let (rate, displacement) = (at_rest.clone(), at_rest);
-        Self { interface, phase: None, displacement, rate, time: 0.0, dt: 1.0, origin: [0.0; 2], exchange: None }
+        let (time, dt, origin) = (0.0, 1.0, [0.0; 2]);
+        Self { interface, phase: None, displacement, rate, time, dt, origin, mounts, exchange: None }
     }
 
     /// What the following steps are driven by.
@@ -48,9 +51,24 @@ impl<const D: usize> AcceptedFace<D> {
         Ok(())
     }
 
-    /// Where the indenter is at the end of a step.
+    /// Where the indenter is at the end of a step; where its place is not given, where it is if it goes on as it did.
     pub fn placement(&self, step: Step) -> Result<Placement> {
-        Ok(self.phase()?.placement(step.t, step.dt))
+        let mut next = self.phase()?.placement(step.t, step.dt);
+        let before = self.interface.placement();
+        let goes_on = if self.goes_on_from(step)?.is_some() { 1.0 } else { 0.0 };
+        if self.mounts[0].is_some() || next.supports[0].is_some() {
+            next.approach_rate = goes_on * before.approach_rate;
+            next.approach = before.approach + next.approach_rate * step.dt;
+        }
+        for axis in (0..2).filter(|axis| self.mounts[1 + axis].is_some()) {
+            next.sliding_rate[axis] = goes_on * before.sliding_rate[axis];
+            next.sliding[axis] = before.sliding[axis] + next.sliding_rate[axis] * step.dt;
+        }
+        let ways = before.ways(&next);
+        for ((mount, way), support) in self.mounts.iter().zip(&ways).zip(&mut next.supports) {
+            *support = mount.map(|mount| mount.support(way)).or(*support);
+        }
+        Ok(next)
     }
 
     /// The length of the step before one from here, s, where that was of the same phase: within one the face goes on as it
@@ -58,6 +76,11 @@ impl<const D: usize> AcceptedFace<D> {
     pub fn goes_on_from(&self, step: Step) -> Result<Option<f64>> {
         // A quarter of the step, against round-off: the one before was half as long or longer.
         Ok((step.t - 1.25 * step.dt > self.phase()?.start).then_some(self.dt))
+    }
+
+    /// The length of the last step, s.
+    pub fn last_step(&self) -> f64 {
+        self.dt
     }
 
     /// Displacements of the nodes, component by component, m.
@@ -93,7 +116,7 @@ impl<const D: usize> AcceptedFace<D> {
         }
         (self.displacement, self.time, self.dt) = (displacement, time, placement.dt);
         if let Some(exchange) = &mut self.exchange {
-            exchange.advance(&mut self.interface, placement, &states)?;
+            exchange.advance(&mut self.interface, (placement, &self.mounts), &states)?;
         }
         self.interface.commit(placement, states)
     }

@@ -8,18 +8,19 @@ mod linear;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
-use nalgebra::SVector;
+use nalgebra::{SVector, Vector2};
 
 use super::accepted::AcceptedFace;
 use super::response::Response;
-use super::traction::{self, Answer, Behind, Laws, Outcome, Site};
+use super::traction::{self, Answer, Behind, Held, Laws, Outcome, Site};
 use super::{BulkFields, Contact, TransientProblem, Work};
 use crate::energy::Energy;
 use crate::error::{Error, Result};
 use crate::friction::Law;
 use crate::interface::{Interface, State};
-use crate::loading::{Phase, Placement};
+use crate::loading::{DIRECTIONS, Mount, Phase, Placement, Support};
 use crate::petsc::{Gather, Matrix, Step, Vector, Verdict};
+use crate::profile::Height;
 use crate::snapshot::Snapshot;
 use linear::Linear;
 
@@ -54,9 +55,26 @@ pub struct Condensed<const D: usize, R> {
     reuse: bool,
     /// How often bulk fields were asked for.
     recoveries: usize,
-    /// From the lowest point of the body to the highest of its face, m, where a force may hold the indenter: its descent is
-    /// then the last unknown, on rank 0.
-    height: Option<f64>,
+    /// What of the indenter's place may be unknown.
+    freedom: Freedom,
+    /// Whether a jump was refused since the last accepted step.
+    jumps: bool,
+}
+
+/// What of the indenter's place may be unknown. These are the last unknowns, on rank 0.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Freedom {
+    /// Each direction.
+    pub directions: [bool; DIRECTIONS],
+    /// From the lowest point of the body to the highest of its face, m.
+    pub height: f64,
+}
+
+impl Freedom {
+    /// How many unknowns that makes.
+    pub fn unknowns(&self) -> usize {
+        self.directions.iter().filter(|free| **free).count()
+    }
 }
 
 /// The points of the contact in one step.
@@ -74,23 +92,25 @@ struct Stage<const D: usize> {
     first: Option<f64>,
     /// Newton steps so far.
     newton: usize,
+    /// What a point is to slip, m, if it goes on as it did and follows what moves the indenter.
+    usual: f64,
 }
 
 impl<const D: usize, R: Response<D>> Condensed<D, R> {
     /// At rest. `layout` has the components of each face node on rank 0; `tolerance` is relative to the tractions.
     pub fn new(
         comm: &SimpleCommunicator,
-        interface: Interface<D>,
+        (interface, mounts): (Interface<D>, [Option<Mount>; DIRECTIONS]),
         response: R,
         layout: &Vector,
-        (tolerance, height): (f64, Option<f64>),
+        (tolerance, freedom): (f64, Freedom),
     ) -> Result<Self> {
         let components = D * interface.face().count();
         let indices: Vec<i32> = (0..components as i32).collect();
         let points = if layout.local_len() > 0 { interface.points().count() } else { 0 };
         Ok(Self {
             comm: comm.duplicate(),
-            face: AcceptedFace::new(interface),
+            face: AcceptedFace::new(interface, mounts),
             response,
             tolerance,
             gather: Gather::new(layout, &indices)?,
@@ -103,7 +123,8 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
             linear: Linear::default(),
             reuse: components > LARGE_FACE,
             recoveries: 0,
-            height,
+            freedom,
+            jumps: false,
         })
     }
 
@@ -113,16 +134,10 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
             return Ok(());
         }
         self.response.prepare(step)?;
-        let mut placement = self.face.placement(step)?;
-        if placement.force.is_some() {
-            // Where it is if it goes on as it did.
-            let Placement { approach, approach_rate, .. } = self.face.interface.placement();
-            placement.approach_rate = self.face.goes_on_from(step)?.map_or(0.0, |_| approach_rate);
-            placement.approach = approach + placement.approach_rate * step.dt;
-        }
+        let placement = self.face.placement(step)?;
         self.face.interface.place(placement)?;
         self.response.free(step, &mut self.free)?;
-        let trial = Outcome::none();
+        let (trial, usual) = (Outcome::none(), self.usual_slip(&placement));
         let sites = match self.behind() {
             Some(behind) => behind.sites(&self.face, placement, &self.free.view()?),
             None => Vec::new(),
@@ -130,8 +145,27 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         let still = placement.is_still()
             && self.face.interface.friction().is_none_or(Law::rests)
             && self.displaced(&self.accepted)?.0 == self.face.displacement();
-        self.stage = Some(Stage { step, placement, still, sites, trial, first: None, newton: 0 });
+        self.stage = Some(Stage { step, placement, still, sites, trial, first: None, newton: 0, usual });
         Ok(())
+    }
+
+    /// See [`Stage::usual`].
+    fn usual_slip(&self, to: &Placement) -> f64 {
+        let moved: f64 =
+            self.face.interface.placement().ways(to).iter().map(|way| (way.far[1] - way.far[0]).abs()).sum();
+        let (mut slipped, mut pressed) = (0.0, 0.0);
+        for (point, state) in self.face.interface.points().all().iter().zip(self.face.interface.states()) {
+            slipped += point.weight * state.pressure * state.slip.norm();
+            pressed += point.weight * state.pressure;
+        }
+        let mean = if pressed > 0.0 { slipped / pressed } else { 0.0 };
+        moved + mean * to.dt / self.face.last_step()
+    }
+
+    /// Whether the state that was tried last, which meets the laws, is one that nothing but the step decides.
+    fn jumped(&self, stage: &Stage<D>) -> bool {
+        let before: Vec<f64> = self.face.interface.states().iter().map(|state| state.shear.norm()).collect();
+        self.with_laws(stage, |laws| traction::jumped(&stage.sites, &stage.trial, laws, (stage.usual, &before)))
     }
 
     /// What is behind the face, on the rank that has it.
@@ -140,10 +174,23 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         self.response.compliance().map(|compliance| Behind { interface, compliance, secant })
     }
 
-    /// kappa, Pa/m, and the last entry of a vector of the unknowns; of none where no force may hold the indenter.
-    fn last(&self, u: &Vector) -> Result<Option<(f64, f64)>> {
-        let Some(stage) = self.stage.as_ref().filter(|_| self.height.is_some()) else { return Ok(None) };
-        Ok(u.view()?.last().map(|last| (traction::modulus(&stage.sites), *last)))
+    /// kappa times how far the indenter has gone in each direction: the last entries of a vector of the unknowns.
+    fn last(&self, u: &Vector) -> Result<[f64; DIRECTIONS]> {
+        let values = u.view()?;
+        let mut entries = values.iter().rev().take(self.freedom.unknowns()).rev();
+        Ok(self.freedom.directions.map(|free| if free { entries.next().copied().unwrap_or(0.0) } else { 0.0 }))
+    }
+
+    /// Writes them.
+    fn write_last(&self, last: [f64; DIRECTIONS], u: &mut Vector) -> Result<()> {
+        let mut values = u.view_mut()?;
+        let mut entries = values.iter_mut().rev().take(self.freedom.unknowns()).rev();
+        for (free, last) in self.freedom.directions.into_iter().zip(last) {
+            if let Some(entry) = free.then(|| entries.next()).flatten() {
+                *entry = last;
+            }
+        }
+        Ok(())
     }
 
     /// Within a phase the tractions go on as they did, or along with the indenter where that goes far in a step. A change that the
@@ -171,29 +218,30 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         write(u, pressed)
     }
 
-    /// How far the indenter has come down from its placement, m.
-    fn descent(&self, u: &Vector) -> Result<f64> {
-        Ok(self.last(u)?.map_or(0.0, |(modulus, last)| last / modulus))
+    /// How far the indenter has gone from its placement, m, by a vector of the unknowns.
+    fn shift(&self, sites: &[Site<D>], u: &Vector) -> Result<SVector<f64, D>> {
+        Ok(traction::shift::<D>(self.last(u)?) / traction::modulus(sites))
     }
 
-    /// Writes the last entry of a vector of the unknowns, where there is one.
-    fn write_last(&self, value: f64, u: &mut Vector) -> Result<()> {
-        let mut values = u.view_mut()?;
-        if let (Some(_), Some(last)) = (self.height, values.last_mut()) {
-            *last = value;
-        }
-        Ok(())
+    /// The last entries of the vector of a state.
+    fn entries(sites: &[Site<D>], shift: &SVector<f64, D>) -> [f64; DIRECTIONS] {
+        let modulus = traction::modulus(sites);
+        std::array::from_fn(|direction| shift.dot(&traction::axis(direction)) * modulus)
     }
 
-    fn laws(&self, stage: &Stage<D>) -> Laws<'_> {
-        let (dt, load) = (stage.step.dt, stage.placement.force);
-        Laws {
-            penalty: self.face.interface.penalty(),
-            friction: self.face.interface.friction(),
-            dt,
+    /// Calls with the laws of a step.
+    fn with_laws<T>(&self, stage: &Stage<D>, call: impl FnOnce(Laws<'_>) -> T) -> T {
+        let interface = &self.face.interface;
+        let sliding = stage.placement.sliding;
+        let unknown = |_| vec![Height { height: f64::NAN, gradient: Vector2::zeros() }; stage.sites.len()];
+        let profile = |further: Vector2<f64>| interface.heights_at(sliding + further).unwrap_or_else(unknown);
+        call(Laws {
+            penalty: interface.penalty(),
+            friction: interface.friction(),
+            dt: stage.step.dt,
             resolution: 0.0,
-            load,
-        }
+            held: Held { supports: stage.placement.supports, profile: Some(&profile) },
+        })
     }
 
     /// The displacements of the nodes under tractions, m, and the forces, N/m; on rank 0.
@@ -209,33 +257,44 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         let Some((behind, stage)) = self.behind().zip(self.stage.as_ref()) else {
             return Ok(Outcome::none());
         };
-        let (tractions, descent) = (tractions::<D>(u)?, self.descent(u)?);
-        if tractions == stage.trial.tractions && descent == stage.trial.descent {
+        let (sites, tractions) = (&stage.sites, tractions::<D>(u)?);
+        let shift = self.shift(sites, u)?;
+        if tractions == stage.trial.tractions && shift == stage.trial.shift {
             return Ok(stage.trial.clone());
         }
-        let rise = traction::up::<D>() * descent;
-        let motions = behind
-            .motions(&self.displaced(&tractions)?.0, &tractions)
-            .into_iter()
-            .map(|motion| motion + rise)
-            .collect();
-        Ok(Outcome::new(&stage.sites, tractions, (motions, descent), self.laws(stage)))
+        let motions = behind.motions(&self.displaced(&tractions)?.0, &tractions);
+        let motions =
+            motions.iter().zip(sites).map(|(motion, site)| motion + traction::against(site, &shift)).collect();
+        Ok(self.with_laws(stage, |laws| Outcome::new(sites, tractions, (motions, shift), laws)))
     }
 
     /// Where the indenter is at the end of a step, on every rank. Collective.
-    fn placed(&self, stage: &Stage<D>, descent: f64) -> Result<Placement> {
-        let (Some(force), Some(height)) = (stage.placement.force, self.height) else { return Ok(stage.placement) };
-        let mut approach = stage.placement.approach + descent;
-        self.comm.process_at_rank(0).broadcast_into(&mut approach);
-        if approach >= height {
-            return Err(Error::Solver(format!(
-                "the force of {force:.6e} N/m presses the indenter by {approach:.3e} m into a body of {height:.3e} m at t = \
-                 {:.6e} s, which no contact carries; give a smaller force or a stiffer body",
-                stage.step.t
-            )));
+    fn placed(&self, stage: &Stage<D>, shift: SVector<f64, D>) -> Result<Placement> {
+        let mut placement = stage.placement;
+        let before = self.face.interface.placement();
+        let mut gone: [f64; DIRECTIONS] = std::array::from_fn(|direction| shift.dot(&traction::axis(direction)));
+        if placement.supports.iter().all(Option::is_none) {
+            return Ok(placement);
         }
-        let approach_rate = (approach - self.face.interface.placement().approach) / stage.step.dt;
-        Ok(Placement { approach, approach_rate, ..stage.placement })
+        self.comm.process_at_rank(0).broadcast_into(&mut gone[..]);
+        if let Some(support) = placement.supports[0] {
+            placement.approach += gone[0];
+            placement.approach_rate = (placement.approach - before.approach) / stage.step.dt;
+            let (approach, height) = (placement.approach, self.freedom.height);
+            if approach >= height {
+                let force = support.force - support.stiffness * gone[0];
+                return Err(Error::Solver(format!(
+                    "the force of {force:.6e} N/m presses the indenter by {approach:.3e} m into a body of {height:.3e} m at \
+                     t = {:.6e} s, which no contact carries; give a smaller force or a stiffer body",
+                    stage.step.t
+                )));
+            }
+        }
+        for axis in (0..2).filter(|axis| placement.supports[1 + axis].is_some()) {
+            placement.sliding[axis] += gone[1 + axis];
+            placement.sliding_rate[axis] = (placement.sliding[axis] - before.sliding[axis]) / stage.step.dt;
+        }
+        Ok(placement)
     }
 
     /// Gives every rank the states and displacements of rank 0. Collective.
@@ -257,15 +316,17 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
     /// Where nothing moved there was nothing for the laws to do, and what is in contact rests, to the last digit: the laws would take
     /// every digit that round-off puts beyond f p and give none back.
     fn ends(&self, stage: &Stage<D>, outcome: &Outcome<D>) -> (Vec<SVector<f64, D>>, Vec<State<D>>) {
-        let laws = self.laws(stage);
         let rests = self.rests(stage, outcome);
         let met = if rests { outcome.tractions.clone() } else { outcome.met(&stage.sites) };
         let ends = stage.sites.iter().zip(&outcome.answers).zip(&outcome.motions).zip(self.face.interface.states());
-        let state = |(((site, answer), motion), before): (((&Site<D>, &Answer<D>), _), &State<D>)| match rests {
-            true if answer.active => before.at_rest(),
-            _ => answer.state(site, motion, laws, before),
-        };
-        (met, ends.map(state).collect())
+        let states = self.with_laws(stage, |laws| {
+            let state = |(((site, answer), motion), before): (((&Site<D>, &Answer<D>), _), &State<D>)| match rests {
+                true if answer.active => before.at_rest(),
+                _ => answer.state(site, motion, laws, before),
+            };
+            ends.map(state).collect()
+        });
+        (met, states)
     }
 
     /// Whether nothing moves in the step.
@@ -277,20 +338,18 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
     fn start(&self, from: Outcome<D>) -> Result<Outcome<D>> {
         let Some((behind, stage)) = self.behind().zip(self.stage.as_ref()) else { return Ok(from) };
         let operator: traction::Operator<'_, D> = (&|j, rows| behind.influence(j, rows), &|t| behind.moves(t));
-        traction::start(&stage.sites, from, self.laws(stage), operator, self.tolerance)
+        self.with_laws(stage, |laws| traction::start(&stage.sites, from, laws, operator, self.tolerance))
     }
 
     /// Takes note of a state that was tried, and writes its residual.
     fn tried(&mut self, outcome: Outcome<D>, f: &mut Vector) -> Result<()> {
         write(f, outcome.answers.iter().map(|answer: &Answer<D>| answer.excess))?;
         self.face.interface.count_laws(outcome.in_contact());
-        // The force that is too much, over the area; where the place is given, the descent, which is then none.
+        // The force that is too much, over the area; where the place is given, how far the indenter has gone, which is then nowhere.
         let stage = self.stage.as_ref().ok_or_else(unprepared)?;
-        let last = match stage.placement.force {
-            Some(_) => outcome.unbalance / traction::area(&stage.sites).sqrt(),
-            None => outcome.descent * traction::modulus(&stage.sites),
-        };
-        self.write_last(last, f)?;
+        let (unbalanced, gone) = (outcome.unbalanced(&stage.sites), Self::entries(&stage.sites, &outcome.shift));
+        let held = stage.placement.supports.map(|support| support.is_some());
+        self.write_last(std::array::from_fn(|i| if held[i] { unbalanced[i] } else { gone[i] }), f)?;
         let stage = self.stage.as_mut().ok_or_else(unprepared)?;
         let norm = outcome.norm(&stage.sites);
         stage.first.get_or_insert(norm);
@@ -325,18 +384,18 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
 
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
         self.predict(step, u)?;
-        self.write_last(0.0, u)?;
-        let Some(force) = self.face.placement(step)?.force else { return Ok(()) };
+        self.write_last([0.0; DIRECTIONS], u)?;
+        let Some(support) = self.face.placement(step)?.supports[0].filter(Support::is_force) else { return Ok(()) };
         // A force that nothing bears yet is brought to where something does.
         self.enter(step)?;
         let outcome = self.outcome(u)?;
         let down = match (&self.stage, outcome.in_contact()) {
             (Some(stage), 0) => {
-                traction::touch(&stage.sites, &outcome.motions, force) * traction::modulus(&stage.sites)
+                traction::touch(&stage.sites, &outcome.motions, support.force) * traction::modulus(&stage.sites)
             }
             _ => 0.0,
         };
-        self.write_last(down, u)
+        self.write_last([down, 0.0, 0.0], u)
     }
 
     fn search(&mut self, _step: Step, u: &mut Vector, decrement: &Vector, f: &mut Vector) -> Result<()> {
@@ -347,21 +406,24 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
         let outcome = match self.behind() {
             Some(_) if astray => self.start(stage.trial.clone())?,
             Some(behind) => {
-                let lowered = self.descent(decrement)?;
-                let decrement = tractions::<D>(decrement)?;
-                let rise = traction::up::<D>() * lowered;
-                let moved: Vec<_> = behind.moves(&decrement)?.into_iter().map(|moved| moved + rise).collect();
-                let along = (&decrement[..], &moved[..], lowered);
+                let sites = &stage.sites;
+                let (gone, decrement) = (self.shift(sites, decrement)?, tractions::<D>(decrement)?);
+                let moves = behind.moves(&decrement)?;
+                let moved: Vec<_> =
+                    moves.iter().zip(sites).map(|(moved, site)| moved + traction::against(site, &gone)).collect();
+                let along = (&decrement[..], &moved[..], gone);
                 // On the way down to a touch nothing says how far.
-                match stage.placement.force.is_some() && stage.trial.in_contact() == 0 {
-                    true => stage.trial.taken(&stage.sites, along, (1.0, self.laws(stage))),
-                    false => traction::length(&stage.sites, &stage.trial, along, self.laws(stage)).0,
-                }
+                let touches = stage.trial.in_contact() > 0;
+                let falls = stage.placement.supports[0].is_some_and(|support| support.is_force()) && !touches;
+                self.with_laws(stage, |laws| match falls {
+                    true => stage.trial.taken(sites, along, (1.0, laws)),
+                    false => traction::length(sites, &stage.trial, along, laws).0,
+                })
             }
             None => stage.trial.clone(),
         };
         write(u, outcome.tractions.iter().copied())?;
-        self.write_last(outcome.descent * traction::modulus(&stage.sites), u)?;
+        self.write_last(Self::entries(&stage.sites, &outcome.shift), u)?;
         self.tried(outcome, f)
     }
 
@@ -382,11 +444,13 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
             };
             verdict = match norm {
                 norm if !norm.is_finite() => 2,
+                norm if norm <= allowed.max(trial.noise(sites)) && self.jumped(stage) => 3,
                 norm if norm <= allowed.max(trial.noise(sites)) => 1,
                 _ => 0,
             };
         }
         self.comm.process_at_rank(0).broadcast_into(&mut verdict);
+        self.jumps |= verdict == 3;
         match verdict {
             0 => Verdict::Iterate,
             1 => Verdict::Converged,
@@ -406,16 +470,29 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
         self.enter(step)?;
         let outcome = self.outcome(u)?;
         let stage = self.stage.take().ok_or_else(unprepared)?;
-        let placement = self.placed(&stage, outcome.descent)?;
+        self.jumps = false;
+        let placement = self.placed(&stage, outcome.shift)?;
         let (met, states) = self.ends(&stage, &outcome);
         let (displacement, forces) = self.displaced(&met)?;
         self.scale = outcome.size(&stage.sites);
         write(u, met.iter().copied())?;
+        // TS takes the next solution as a change of this one, so that its digits depend on it.
+        self.write_last([0.0; DIRECTIONS], u)?;
         self.before = std::mem::replace(&mut self.accepted, met);
         self.displacement.view_mut()?.copy_from_slice(&displacement);
         let (states, displacement) = self.share(states, displacement);
         self.face.commit((step.t, placement), states, displacement)?;
         self.response.commit(step, &self.displacement, &forces)
+    }
+
+    fn advice(&self) -> &'static str {
+        match self.jumps {
+            true => {
+                "friction weakens there as it slips, so that the indenter jumps, and a shorter step jumps as far: give \
+                 mount.tangential a mass, which takes time for it, or friction.coefficient values that rise again with v"
+            }
+            false => super::ADVICE,
+        }
     }
 
     fn keep_account(&mut self, _layout: &Vector) -> Result<()> {

@@ -248,6 +248,10 @@ impl Implicit for Driver<'_> {
         self.problem.test(iteration, norm)
     }
 
+    fn advice(&self) -> &'static str {
+        self.problem.advice()
+    }
+
     fn judge(&mut self, step: Step, u: &Vector) -> Result<Judgement> {
         let phase = &self.phases[self.phase];
         let Some(adaptive) = &phase.adaptive else { return Ok(Judgement::Accept) };

@@ -5,7 +5,7 @@ use nalgebra::{SMatrix, SVector};
 use super::accepted::AcceptedFace;
 use crate::error::Result;
 use crate::interface::{Interface, Residual, Tangent, Trial};
-use crate::loading::Placement;
+use crate::loading::{DIRECTIONS, Placement};
 use crate::petsc::{Gather, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 
@@ -34,7 +34,7 @@ impl<const D: usize> ContactFace<D> {
     /// says which of them are held.
     pub fn new(interface: Interface<D>, gather: Gather, rows: Vec<Option<usize>>, held: &[[bool; D]]) -> Self {
         Self {
-            accepted: AcceptedFace::new(interface),
+            accepted: AcceptedFace::new(interface, [None; DIRECTIONS]),
             gather,
             rows,
             free: held.iter().map(|held| SVector::from(held.map(|held| f64::from(!held)))).collect(),

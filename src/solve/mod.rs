@@ -20,13 +20,16 @@ use crate::petsc::{Matrix, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 
 pub use body::{Body, Moduli, Region, Solid};
-pub use condensed::{Condensed, LARGE_FACE, LARGE_PERIODIC_FACE};
+pub use condensed::{Condensed, Freedom, LARGE_FACE, LARGE_PERIODIC_FACE};
 pub use driver::{Counts, Driver, MAX_NEWTON, Position};
 pub use monolithic::Monolithic;
 pub use response::{
     Compliance, Following, Inside, Interior, Layered, PeriodicColumn, Relaxation, Relaxations, Remembering, Response,
     Sparse,
 };
+
+/// What helps most steps that do not converge.
+const ADVICE: &str = "more steps, friction regularised less sharply or a softer penalty may help";
 
 /// A discretised contact problem in a form that TS and SNES can step.
 ///
@@ -65,6 +68,10 @@ pub trait TransientProblem {
     fn commit(&mut self, step: Step, u: &mut Vector) -> Result<()>;
     /// Keeps account of the energy from here on, at rest; `layout` is that of the solution.
     fn keep_account(&mut self, layout: &Vector) -> Result<()>;
+    /// What may help where a step does not converge however short.
+    fn advice(&self) -> &'static str {
+        ADVICE
+    }
     /// The energy balance at the accepted state, where it is kept account of.
     fn energy(&self) -> Option<Energy>;
     /// Adds the accepted state, with the solution `u`, to a snapshot: all that later steps depend on, down to the last

@@ -5,7 +5,7 @@ use nalgebra::{SMatrix, SVector};
 use super::body::{Body, rows_of};
 use super::condensed::LARGE_FACE;
 use super::face::ContactFace;
-use super::traction::{self, Behind, Laws, Outcome};
+use super::traction::{self, Behind, Held, Laws, Outcome};
 use super::woodbury::Woodbury;
 use super::{BulkFields, Contact, TransientProblem, Work};
 use crate::bulk::Bulk;
@@ -147,8 +147,13 @@ impl<const D: usize> Monolithic<D> {
         let behind = Behind { interface, compliance, secant };
         let sites = behind.sites(&self.face.accepted, placement, &free);
         let resolution = placement.resolution * step.dt;
-        let laws =
-            Laws { penalty: interface.penalty(), friction: interface.friction(), dt: step.dt, resolution, load: None };
+        let laws = Laws {
+            penalty: interface.penalty(),
+            friction: interface.friction(),
+            dt: step.dt,
+            resolution,
+            held: Held::default(),
+        };
         let normals = interface.points().all().iter().map(|point| point.normal);
         let tractions: Vec<SVector<f64, D>> =
             interface.states().iter().zip(normals).map(|(state, normal)| state.on_layer(&normal)).collect();
@@ -156,7 +161,7 @@ impl<const D: usize> Monolithic<D> {
         let moved = |t: &[SVector<f64, D>]| -> Result<Vec<SVector<f64, D>>> {
             Ok(behind.moves(t)?.iter().zip(&at_rest).map(|(moved, free)| moved + free).collect())
         };
-        let first = Outcome::new(&sites, tractions.clone(), (moved(&tractions)?, 0.0), laws);
+        let first = Outcome::new(&sites, tractions.clone(), (moved(&tractions)?, SVector::zeros()), laws);
         let operator: traction::Operator<'_, D> = (&|j, rows| behind.influence(j, rows), &|t| behind.moves(t));
         // To the last digits: what displacements make of the tractions is more than they are off.
         let outcome = traction::start(&sites, first, laws, operator, f64::EPSILON)?;

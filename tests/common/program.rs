@@ -230,8 +230,9 @@ pub fn assert_same(one: &Path, other: &Path, within: f64) {
     for ((name, one), (_, other)) in one.iter().zip(&other) {
         assert_eq!(one.len(), other.len(), "{name}");
         if within == 0.0 {
-            let differing = one.iter().zip(other).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
-            assert_eq!(differing, 0, "{name}: numbers that differ");
+            let pairs = one.iter().zip(other).enumerate();
+            let differing: Vec<_> = pairs.filter(|(_, (a, b))| a.to_bits() != b.to_bits()).collect();
+            assert!(differing.is_empty(), "{name}: numbers that differ: {differing:?}");
         } else if name != "newton_iterations" {
             // Relative to the tractions already, and the root of a sum of products that are nothing where all is resolved:
             // what goes with the tractions is its square.

@@ -2,8 +2,8 @@
 
 use std::time::SystemTime;
 
-use mpjr::energy::Energy;
-use mpjr::output::{Across, BulkPlan, FacePlan, HistoryRow, InterfaceFrame, Metadata, Plan};
+use mpjr::energy::{Energy, MountEnergy};
+use mpjr::output::{Across, BulkPlan, Extra, FacePlan, HistoryRow, InterfaceFrame, Metadata, Plan};
 
 /// Nodes of the contact face.
 pub const FACE: usize = 5;
@@ -27,7 +27,7 @@ pub fn plan(rows: usize, bulk_frames: usize) -> Plan {
     Plan {
         history_rows: rows,
         phase_names: vec!["indent".into(), "slide".into()],
-        energy: true,
+        extra: Extra::ALL,
         interface_rows: rows,
         face: FacePlan::along_x((0..FACE).map(|i| i as f64 / 4.0).collect()),
         bulk: (bulk_frames > 0).then(|| mesh(6, 4, bulk_frames)),
@@ -68,6 +68,8 @@ pub fn row(i: usize) -> HistoryRow {
         newton_iterations: 10 * i,
         traction_oscillation: 17.0 * v,
         across: Across::default(),
+        mount_normal: 22.0 * v,
+        mount_tangential: 23.0 * v,
         energy: Energy {
             external_work: 11.0 * v,
             stored: 12.0 * v,
@@ -75,12 +77,18 @@ pub fn row(i: usize) -> HistoryRow {
             friction_dissipation: 14.0 * v,
             penalty: 15.0 * v,
             imbalance: 16.0 * v,
+            mounts: MountEnergy { spring: 19.0 * v, dashpot: 20.0 * v, kinetic: 21.0 * v },
         },
     }
 }
 
 /// The real columns of [`row`] other than time, with their factors.
-pub const COLUMNS: [(&str, f64); 17] = [
+pub const COLUMNS: [(&str, f64); 22] = [
+    ("energy/mount_spring", 19.0),
+    ("energy/mount_dashpot", 20.0),
+    ("energy/kinetic", 21.0),
+    ("mount_normal", 22.0),
+    ("mount_tangential", 23.0),
     ("approach", 2.0),
     ("sliding", 3.0),
     ("normal_force", 4.0),

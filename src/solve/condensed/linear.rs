@@ -15,7 +15,7 @@ const STALE_AFTER: usize = 10;
 #[derive(Default)]
 pub(super) struct Linear<const D: usize> {
     pub points: Vec<Linearised<D>>,
-    /// Where a force is held.
+    /// Where the place of the indenter is unknown.
     pub border: Option<Border<D>>,
     pub factor: Option<Factor<D>>,
     pub fourier: Option<Fourier<D>>,
@@ -31,7 +31,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         let stage = self.stage.as_ref().ok_or_else(unprepared)?;
         let points = stage.trial.linearised(&stage.sites);
         let Some(behind) = self.behind() else { return Ok(()) };
-        let border = stage.placement.force.map(|_| Border::new(&stage.sites, &points));
+        let border = self.with_laws(stage, |laws| Border::new(&stage.sites, (&stage.trial, &points), laws.held));
         let Linear { factor, made_for, used, .. } = &self.linear;
         let points_are_nodes = !self.face.interface.points().share_nodes();
         let fourier = match points_are_nodes && D * points.len() > LARGE_PERIODIC_FACE {
@@ -67,7 +67,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         };
         let dt = tractions::<D>(v)?;
         let mut values = traction::product(&self.linear.points, &dt, &behind.moves(&dt)?);
-        let mut last = self.last(v)?.map_or(0.0, |(_, last)| last);
+        let mut last = self.last(v)?;
         if let Some(border) = &self.linear.border {
             last = border.product(&stage.sites, (&dt, last), &mut values);
         }
@@ -78,7 +78,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
     /// x = J^-1 b, or nearly so.
     pub(super) fn solution(&mut self, b: &Vector, x: &mut Vector) -> Result<()> {
         self.linear.used += 1;
-        let (right, mut last) = (tractions::<D>(b)?, self.last(b)?.map_or(0.0, |(_, last)| last));
+        let (right, mut last) = (tractions::<D>(b)?, self.last(b)?);
         let inverse = |right: &[SVector<f64, D>]| match (&self.linear, self.behind()) {
             (Linear { fourier: Some(fourier), points, .. }, Some(_)) => fourier.solve(points, right),
             (Linear { factor: Some(factor), .. }, Some(behind)) => factor.solve(right, |t| behind.moves(t)),
@@ -87,13 +87,13 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         let solution = match (&self.linear.border, &self.stage) {
             (Some(border), Some(stage)) => {
                 let solved = border.solve(&stage.sites, (&right, last), inverse)?;
-                let (solution, lowered) = solved.unwrap_or_else(|| {
+                let (solution, gone) = solved.unwrap_or_else(|| {
                     // Nothing touches: down to where something does.
-                    let down =
-                        traction::touch(&stage.sites, &stage.trial.motions, stage.placement.force.unwrap_or(0.0));
-                    (right, -down * border.modulus)
+                    let force = stage.placement.supports[0].map_or(0.0, |support| support.force);
+                    let down = traction::touch(&stage.sites, &stage.trial.motions, force);
+                    (right, [-down * border.modulus, 0.0, 0.0])
                 });
-                last = lowered;
+                last = gone;
                 solution
             }
             _ => inverse(&right)?,

@@ -7,6 +7,7 @@
 
 use nalgebra::SVector;
 
+use super::fold::branches;
 use super::search::{Operator, Outcome, settle};
 use super::{Laws, Site};
 use crate::error::Result;
@@ -22,7 +23,7 @@ const MOST_STAGES: i32 = 20;
 /// Beyond this nothing is left to be softened of laws that are exact.
 const NEARLY_EXACT: f64 = 1e9;
 
-/// Tractions near where the laws hold under an indenter that stays, from others.
+/// Tractions near where the laws hold, from others.
 pub fn start<const D: usize>(
     sites: &[Site<D>],
     from: Outcome<D>,
@@ -30,8 +31,9 @@ pub fn start<const D: usize>(
     operator: Operator<'_, D>,
     tolerance: f64,
 ) -> Result<Outcome<D>> {
-    let laws = Laws { load: None, ..laws };
-    let from = Outcome::new(sites, from.tractions, (from.motions, from.descent), laws);
+    if let Some(found) = branches(sites, &from, laws, operator, tolerance)? {
+        return Ok(found);
+    }
     let direct = settle(sites, from.clone(), laws, operator, DIRECT)?;
     if direct.norm(sites) <= tolerance * direct.size(sites).max(from.size(sites)) {
         return Ok(direct);
@@ -45,15 +47,14 @@ pub fn start<const D: usize>(
         let penalty = laws.penalty.map_or(soft, |penalty| penalty.min(soft));
         let softened = laws.friction.map(|law| softer(law, laws.dt, (slip, stiffness)));
         let softer = Laws { penalty: Some(penalty), friction: softened.as_deref(), ..laws };
-        let answered = Outcome::new(sites, at.tractions, (at.motions, at.descent), softer);
+        let answered = at.under(sites, softer);
         at = settle(sites, answered, softer, operator, EACH)?;
         let sharp = laws.friction.is_none_or(|law| law.sharpness(laws.dt) * stiffness >= slip);
         if laws.penalty == Some(penalty) && sharp || stiffness > NEARLY_EXACT {
             break;
         }
     }
-    let at = Outcome::new(sites, at.tractions, (at.motions, at.descent), laws);
-    let at = settle(sites, at, laws, operator, EACH)?;
+    let at = settle(sites, at.under(sites, laws), laws, operator, EACH)?;
     Ok(if at.norm(sites) <= direct.norm(sites) { at } else { direct })
 }
 

@@ -17,9 +17,10 @@
 mod behind;
 mod continuation;
 mod dense;
+mod fold;
 mod fourier;
+mod held;
 mod linear;
-mod load;
 mod search;
 
 use nalgebra::SVector;
@@ -31,10 +32,11 @@ use crate::interface::State;
 pub use behind::Behind;
 pub use continuation::start;
 pub use dense::Factor;
+pub use fold::jumped;
 pub use fourier::Fourier;
+pub use held::{Border, Held, Over, against, axis, in_plane, modulus, shift, touch, up};
 pub use linear::{Linearised, product};
-pub use load::{Border, modulus, touch, up};
-pub use search::{Operator, Outcome, area, length, normal_force, settle};
+pub use search::{Operator, Outcome, area, length, settle};
 
 /// A point of the contact during a step.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,8 +86,8 @@ pub struct Laws<'a> {
     pub dt: f64,
     /// See [`Circumstances::resolution`], m: 0 but where displacements are to say the same.
     pub resolution: f64,
-    /// The force that the indenter is held by, N or N/m; none = its place is given.
-    pub load: Option<f64>,
+    /// What holds the indenter.
+    pub held: Held<'a>,
 }
 
 /// What the laws make of a traction and a motion at one point, with derivatives.

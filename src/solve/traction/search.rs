@@ -1,12 +1,13 @@
 //! How far to go along a Newton step, and the whole of Newton's method for those who need no SNES.
 
-use nalgebra::SVector;
+use nalgebra::{SVector, Vector2};
 
 use super::dense::{Factor, Influence};
+use super::held::{Border, Held, Over, against, axis, up};
 use super::linear::Linearised;
-use super::load::up;
 use super::{Answer, Laws, Site};
 use crate::error::Result;
+use crate::loading::DIRECTIONS;
 
 /// Halvings of a Newton step at most.
 const MOST_HALVINGS: usize = 12;
@@ -18,56 +19,101 @@ const SUFFICIENT: f64 = 1e-4;
 pub struct Outcome<const D: usize> {
     /// t, Pa.
     pub tractions: Vec<SVector<f64, D>>,
-    /// M relative to the indenter where it was thought to be, m.
+    /// M relative to the indenter where it was placed, m.
     pub motions: Vec<SVector<f64, D>>,
-    /// How far the indenter has come down from there, m: part of each motion.
-    pub descent: f64,
-    /// The force that is too much, over the root of the area: beside G in the norm.
-    pub unbalance: f64,
+    /// How far the indenter has gone from there, m: part of each motion.
+    pub shift: SVector<f64, D>,
+    /// The profile there.
+    pub over: Vec<Over>,
+    /// R of each direction over the root of the area: beside G in the norm.
+    pub unbalance: [f64; DIRECTIONS],
     /// Of each point.
     pub answers: Vec<Answer<D>>,
+    /// What round-off leaves of the equations of the indenter.
+    noise: f64,
 }
 
-/// What a Newton step takes off: dt, what that moves (C dt, with what the indenter is lowered by), and what it is lowered by, m.
-pub type Along<'a, const D: usize> = (&'a [SVector<f64, D>], &'a [SVector<f64, D>], f64);
+/// What a Newton step takes off: dt, what that moves (C dt, with what the indenter goes back), and what that goes back, m.
+pub type Along<'a, const D: usize> = (&'a [SVector<f64, D>], &'a [SVector<f64, D>], SVector<f64, D>);
 
 impl<const D: usize> Outcome<D> {
-    /// Asks the laws.
+    /// Asks the laws; `motions` are those under the profile as it was placed.
     pub fn new(
         sites: &[Site<D>],
         tractions: Vec<SVector<f64, D>>,
-        (motions, descent): (Vec<SVector<f64, D>>, f64),
+        (mut motions, shift): (Vec<SVector<f64, D>>, SVector<f64, D>),
         laws: Laws<'_>,
     ) -> Self {
-        let unbalance = laws.load.map_or(0.0, |load| (normal_force(sites, &tractions) - load) / area(sites).sqrt());
+        let over = laws.held.over(&shift, sites.len());
+        for ((site, over), motion) in sites.iter().zip(&over).zip(&mut motions) {
+            *motion -= site.normal * (site.normal.dot(&up()) * over.rise);
+        }
+        let unbalance = laws.held.unbalance(sites, (&tractions, &over), &shift);
+        let unbalance = unbalance.map(|unbalance| unbalance / area(sites).sqrt());
         let answers =
             sites.iter().zip(&tractions).zip(&motions).map(|((site, t), m)| site.answer(t, m, laws)).collect();
-        Self { tractions, motions, descent, unbalance, answers }
+        Self { tractions, motions, shift, over, unbalance, answers, noise: laws.held.noise(sites) }
+    }
+
+    /// The motions under the profile as it was placed.
+    fn under_placed(&self, sites: &[Site<D>]) -> Vec<SVector<f64, D>> {
+        let lowered = |((site, over), motion): ((&Site<D>, &Over), &SVector<f64, D>)| {
+            motion + site.normal * (site.normal.dot(&up()) * over.rise)
+        };
+        sites.iter().zip(&self.over).zip(&self.motions).map(lowered).collect()
+    }
+
+    /// The same under other laws.
+    pub fn under(self, sites: &[Site<D>], laws: Laws<'_>) -> Self {
+        let motions = self.under_placed(sites);
+        Self::new(sites, self.tractions, (motions, self.shift), laws)
     }
 
     /// So much less of a step.
     pub fn taken(
         &self,
         sites: &[Site<D>],
-        (decrement, moved, lowered): Along<'_, D>,
+        (decrement, moved, gone): Along<'_, D>,
         (lambda, laws): (f64, Laws<'_>),
     ) -> Self {
         let less = |values: &[SVector<f64, D>], by: &[SVector<f64, D>]| {
             values.iter().zip(by).map(|(value, by)| value - by * lambda).collect::<Vec<_>>()
         };
-        let motions = (less(&self.motions, moved), self.descent - lambda * lowered);
+        let motions = (less(&self.under_placed(sites), moved), self.shift - gone * lambda);
         Self::new(sites, less(&self.tractions, decrement), motions, laws)
+    }
+
+    /// How the forces along the face change with the slopes of the profile as the indenter goes on in a direction, N/m per m.
+    pub fn steepening(&self, sites: &[Site<D>], held: Held<'_>, direction: usize) -> Vector2<f64> {
+        /// Over the distance of two points.
+        const BESIDE: f64 = 1e-4;
+        let beside = BESIDE * (area(sites) / sites.len().max(1) as f64).powf(1.0 / (D - 1) as f64);
+        let over = |sign: f64| held.over(&(self.shift + axis::<D>(direction) * (sign * beside)), sites.len());
+        let slopes = over(1.0).into_iter().zip(over(-1.0)).map(|(on, back)| (on.slope - back.slope) / (2.0 * beside));
+        let force = |((site, traction), steeper): ((&Site<D>, &SVector<f64, D>), Vector2<f64>)| {
+            steeper * (-site.weight * site.normal.dot(traction) * site.normal.dot(&up()))
+        };
+        sites.iter().zip(&self.tractions).zip(slopes).map(force).sum()
     }
 
     /// Of no points.
     pub fn none() -> Self {
-        Self { tractions: Vec::new(), motions: Vec::new(), descent: 0.0, unbalance: 0.0, answers: Vec::new() }
+        Self {
+            tractions: Vec::new(),
+            motions: Vec::new(),
+            shift: SVector::zeros(),
+            over: Vec::new(),
+            unbalance: [0.0; DIRECTIONS],
+            answers: Vec::new(),
+            noise: 0.0,
+        }
     }
 
     /// The norm of G over the face, Pa m^((D-1)/2).
     pub fn norm(&self, sites: &[Site<D>]) -> f64 {
         let squares = sites.iter().zip(&self.answers).map(|(site, answer)| site.weight * answer.excess.norm_squared());
-        (squares.sum::<f64>() + self.unbalance * self.unbalance).sqrt()
+        let held: f64 = self.unbalance.iter().map(|unbalance| unbalance * unbalance).sum();
+        (squares.sum::<f64>() + held).sqrt()
     }
 
     /// That of t.
@@ -79,7 +125,7 @@ impl<const D: usize> Outcome<D> {
     /// What round-off leaves of G, in the same norm.
     pub fn noise(&self, sites: &[Site<D>]) -> f64 {
         let squares = sites.iter().zip(&self.answers).map(|(site, answer)| site.weight * answer.noise);
-        4.0 * squares.sum::<f64>().sqrt()
+        4.0 * (squares.sum::<f64>() + self.noise * self.noise).sqrt()
     }
 
     /// The derivatives at each point.
@@ -92,6 +138,11 @@ impl<const D: usize> Outcome<D> {
         sites.iter().zip(&self.answers).map(|(site, answer)| answer.met(site)).collect()
     }
 
+    /// R of each direction over the area.
+    pub fn unbalanced(&self, sites: &[Site<D>]) -> [f64; DIRECTIONS] {
+        self.unbalance.map(|unbalance| unbalance / area(sites).sqrt())
+    }
+
     /// How many points are in contact.
     pub fn in_contact(&self) -> usize {
         self.answers.iter().filter(|answer| answer.active).count()
@@ -101,11 +152,6 @@ impl<const D: usize> Outcome<D> {
 /// Length, or area, of the face.
 pub fn area<const D: usize>(sites: &[Site<D>]) -> f64 {
     sites.iter().map(|site| site.weight).sum()
-}
-
-/// The force on the indenter, upward.
-pub fn normal_force<const D: usize>(sites: &[Site<D>], tractions: &[SVector<f64, D>]) -> f64 {
-    -sites.iter().zip(tractions).map(|(site, t)| site.weight * t.dot(&up())).sum::<f64>()
 }
 
 /// The face at t - lambda dt with the longest lambda of 1, 1/2, ... that leaves less of G, or else that which leaves the least;
@@ -138,7 +184,7 @@ pub fn length<const D: usize>(
 pub type Operator<'a, const D: usize> =
     (&'a Influence<'a, D>, &'a dyn Fn(&[SVector<f64, D>]) -> Result<Vec<SVector<f64, D>>>);
 
-/// Newton's method under an indenter that stays, from given tractions to where the laws hold to round-off, or as near as `most` iterations come.
+/// Newton's method from given tractions to where the laws hold to round-off, or as near as `most` iterations come.
 pub fn settle<const D: usize>(
     sites: &[Site<D>],
     mut at: Outcome<D>,
@@ -152,12 +198,20 @@ pub fn settle<const D: usize>(
         }
         let Ok(factor) = Factor::new(at.linearised(sites), influence) else { break };
         let excess: Vec<_> = at.answers.iter().map(|answer| answer.excess).collect();
-        let decrement = factor.solve(&excess, moves)?;
-        if !decrement.iter().all(|d| d.iter().all(|value| value.is_finite())) {
+        let solve = |right: &[SVector<f64, D>]| factor.solve(right, moves);
+        let (decrement, gone) = match Border::new(sites, (&at, factor.points()), laws.held) {
+            None => (solve(&excess)?, SVector::zeros()),
+            Some(border) => match border.solve(sites, (&excess, at.unbalanced(sites)), solve)? {
+                Some((decrement, gone)) => (decrement, border.shift(gone)),
+                None => break,
+            },
+        };
+        if !decrement.iter().chain([&gone]).all(|d| d.iter().all(|value| value.is_finite())) {
             break;
         }
-        let moved = moves(&decrement)?;
-        at = length(sites, &at, (&decrement, &moved, 0.0), laws).0;
+        let moved: Vec<_> =
+            moves(&decrement)?.iter().zip(sites).map(|(moved, site)| moved + against(site, &gone)).collect();
+        at = length(sites, &at, (&decrement, &moved, gone), laws).0;
     }
     Ok(at)
 }

@@ -1,0 +1,110 @@
+//! Friction that weakens as a point slips: the face then has several states, and may have to jump from one to another.
+//!
+//! Newton's method goes on from where the tractions went, and so along a state as long as there is one. Where that ends, at a fold,
+//! the face is tried as it would be if it stuck, and then as it would be if it slipped fast. A jump to fast slip is one of the
+//! equations only where friction rises again there, or where the mount has a mass, which takes time for it; otherwise what
+//! follows depends on nothing but the step, and it is refused.
+
+use super::search::{Operator, Outcome, settle};
+use super::{Answer, Laws, Site};
+use crate::error::Result;
+use crate::friction::{Bound, Circumstances, Lasting, Law, Share, Strength};
+
+/// Newton iterations of each attempt.
+const EACH: usize = 25;
+/// A jump slips by more than so many times what was to be expected of a step, and leaves less than this share of the shear.
+const FARTHER: f64 = 2.0;
+const LEFT: f64 = 0.95;
+
+/// A state near the given one by sticking, or else by slipping fast, where laws hold; none where neither does.
+pub fn branches<const D: usize>(
+    sites: &[Site<D>],
+    from: &Outcome<D>,
+    laws: Laws<'_>,
+    operator: Operator<'_, D>,
+    tolerance: f64,
+) -> Result<Option<Outcome<D>>> {
+    let Some(law) = laws.friction.filter(|law| law.strength().varies()) else { return Ok(None) };
+    let pressure = from.answers.iter().map(|answer| answer.pressure).fold(0.0, f64::max);
+    let slid = sites.iter().map(|site| site.slid).fold(0.0, f64::max);
+    let at = Circumstances { pressure, dt: laws.dt, resolution: 0.0, slid };
+    for rate in [0.0, law.strength().weakest(at)] {
+        let frozen = Frozen { law, rate };
+        let first = from.clone().under(sites, Laws { friction: Some(&frozen), ..laws });
+        let first = settle(sites, first, Laws { friction: Some(&frozen), ..laws }, operator, EACH)?;
+        let found = settle(sites, first.under(sites, laws), laws, operator, EACH)?;
+        let holds = found.norm(sites) <= tolerance * found.size(sites).max(from.size(sites));
+        if holds && (rate == 0.0 || stays(sites, &found, laws)) {
+            return Ok(Some(found));
+        }
+    }
+    Ok(None)
+}
+
+/// Whether a state that was met is one that the step jumped to and that nothing but the step decides. `usual` is what a point was
+/// to slip in the step, m, `before` the shears that were accepted, Pa.
+pub fn jumped<const D: usize>(
+    sites: &[Site<D>],
+    to: &Outcome<D>,
+    laws: Laws<'_>,
+    (usual, before): (f64, &[f64]),
+) -> bool {
+    let Some(law) = laws.friction.filter(|law| law.strength().varies()) else { return false };
+    let (mut slipped, mut pressed, mut sheared, mut was) = (0.0, 0.0, 0.0, 0.0);
+    for ((site, answer), before) in sites.iter().zip(&to.answers).zip(before) {
+        let pressure = site.weight * answer.pressure;
+        slipped += pressure * law.lasting(answer.slip.norm()).length;
+        pressed += pressure;
+        sheared += site.weight * answer.shear.norm();
+        was += site.weight * before;
+    }
+    slipped > FARTHER * usual * pressed && sheared < LEFT * was && !stays(sites, to, laws)
+}
+
+/// Whether the face would stay in fast slip: friction rises again there, or a mass holds the indenter.
+fn stays<const D: usize>(sites: &[Site<D>], at: &Outcome<D>, laws: Laws<'_>) -> bool {
+    let Some(law) = laws.friction else { return true };
+    let rise = |(site, answer): (&Site<D>, &Answer<D>)| {
+        site.weight * law.bound(site.circumstances(answer.pressure, laws), answer.slip.norm()).by_slip
+    };
+    let inert = laws.held.supports[1..].iter().flatten().any(|support| support.inert);
+    let slipping = sites.iter().zip(&at.answers).filter(|(_, answer)| answer.active && !answer.sticks);
+    inert || slipping.map(rise).sum::<f64>() > 0.0
+}
+
+/// A law whose strength is that of a rate, m/s, whatever a point slips.
+#[derive(Debug)]
+struct Frozen<'a> {
+    law: &'a dyn Law,
+    rate: f64,
+}
+
+impl Law for Frozen<'_> {
+    fn strength(&self) -> &Strength {
+        self.law.strength()
+    }
+
+    fn bound(&self, at: Circumstances, _slip: f64) -> Bound {
+        self.law.strength().at(at, Lasting { length: self.rate * at.dt, by_slip: 0.0 })
+    }
+
+    fn share(&self, at: Circumstances, slip: f64) -> Share {
+        self.law.share(at, slip)
+    }
+
+    fn sharpness(&self, dt: f64) -> f64 {
+        self.law.sharpness(dt)
+    }
+
+    fn sticks(&self, at: Circumstances, slip: f64) -> bool {
+        self.law.sticks(at, slip)
+    }
+
+    fn holds(&self) -> bool {
+        self.law.holds()
+    }
+
+    fn elastic(&self, slip: f64) -> f64 {
+        self.law.elastic(slip)
+    }
+}
