@@ -283,7 +283,19 @@ fn a_script_for_slurm_is_printed() {
     let (_directory, out) = prepare(SWEEP);
     let script = output_of(&mut sweep(program(1), &out, &["--slurm"]));
     assert!(script.starts_with("#!/bin/sh\n"));
-    for part in ["--array=0-5", "--ntasks=1", "--signal=B:USR1@120", "--case \"$SLURM_ARRAY_TASK_ID\""] {
+    let asked = ["--slurm", "--time", "2:00:00", "--mem", "8G", "--cpus", "2", "--launcher", "srun"];
+    let other = output_of(&mut sweep(program(1), &out, &asked));
+    for part in ["--time=2:00:00\n", "--mem=8G\n", "--cpus-per-task=2\n", "exec srun --mpi=pmix "] {
+        assert!(other.contains(part), "{part} in\n{other}");
+    }
+    for part in [
+        "--time=24:00:00\n",
+        "exec mpirun -n \"$SLURM_NTASKS\" ",
+        "--array=0-5",
+        "--ntasks=1",
+        "--signal=B:USR1@120",
+        "--case \"$SLURM_ARRAY_TASK_ID\"",
+    ] {
         assert!(script.contains(part), "{part} in\n{script}");
     }
 }

@@ -142,7 +142,9 @@ fn open(
     let scene = job.scene;
     let plan = plan(scene, mesh, phases);
     if let (Origin::Checkpoint, Some(begun)) = (job.origin, begun) {
-        return Recorder::resume(job.out, plan, begun.rows);
+        let recorder = Recorder::resume(job.out, plan, begun.rows)?;
+        recorder.set_scene(&scene.to_toml())?;
+        return Ok(recorder);
     }
     let metadata = Metadata {
         title: scene.title.clone(),

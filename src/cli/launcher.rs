@@ -2,12 +2,36 @@
 
 use crate::error::{Error, Result};
 
+/// Where Open MPI, MPICH and its kin, and Slurm say which rank a process is.
+const RANKS: [&str; 4] = ["OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"];
+
+/// The rank of this process, as its launcher has it; none without one. Known without MPI.
+fn rank() -> Option<String> {
+    RANKS.iter().find_map(|name| std::env::var(name).ok())
+}
+
 /// Whether this process is alone or rank 0 of its launcher: known without MPI, so that what needs no solver starts none.
 pub fn is_first_process() -> bool {
-    ["OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"]
-        .iter()
-        .find_map(|name| std::env::var(name).ok())
-        .is_none_or(|rank| rank == "0")
+    rank().is_none_or(|rank| rank == "0")
+}
+
+/// Whether a launcher started this process whose own standard output is a terminal. It may be some generations away, as
+/// the proxies of MPICH's mpiexec and Slurm's step daemon stand between.
+pub fn is_on_a_terminal() -> bool {
+    const GENERATIONS: usize = 4;
+    if rank().is_none() {
+        return false;
+    }
+    let parent = |process: u32| -> Option<u32> {
+        let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
+        // After the name, which may hold anything: the state, then the parent.
+        stat.rsplit(')').next()?.split_whitespace().nth(1)?.parse().ok()
+    };
+    let ancestors = std::iter::successors(Some(std::os::unix::process::parent_id()), |&process| parent(process));
+    ancestors.take(GENERATIONS).filter(|&process| process > 1).any(|process| {
+        let output = std::fs::read_link(format!("/proc/{process}/fd/1")).unwrap_or_default();
+        output.starts_with("/dev/pts") || output.starts_with("/dev/tty")
+    })
 }
 
 /// How many processes a launcher says that it started.

@@ -2,17 +2,21 @@
 
 mod case;
 mod check;
+mod compare;
 mod fit;
 mod interrupt;
 mod json;
 mod launcher;
+mod manual;
 mod material;
+mod new;
 mod origin;
 mod plot;
 mod profile;
 mod progress;
 mod record;
 mod run;
+mod schema;
 mod study;
 mod summary;
 mod sweep;
@@ -58,6 +62,16 @@ enum Command {
     Verify(verify::VerifyArguments),
     /// Draw figures from results
     Plot(plot::PlotArguments),
+    /// Compare two result files, dataset by dataset
+    Compare(compare::CompareArguments),
+    /// Write a commented first scene that runs as it is
+    New(new::NewArguments),
+    /// Print what a shell needs to complete commands and options
+    Completions(manual::CompletionsArguments),
+    /// Print the manual page, or write one for each command
+    Man(manual::ManArguments),
+    /// Print the JSON schema of scenes and sweeps, by which editors complete and check them
+    Schema(schema::SchemaArguments),
 }
 
 /// Reads the command line, does what it says, and returns the exit code: 0 done, 2 scene or command line wrong,
@@ -80,6 +94,11 @@ pub fn main() -> i32 {
         Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Check(arguments) => on_first_process(|| check::run(&arguments)),
         Command::Plot(arguments) => on_first_process(|| plot::run(&arguments)),
+        Command::Schema(arguments) => on_first_process(|| schema::run(&arguments)),
+        Command::Compare(arguments) => on_first_process(|| compare::run(&arguments)),
+        Command::New(arguments) => on_first_process(|| new::run(&arguments)),
+        Command::Completions(arguments) => on_first_process(|| manual::completions(&arguments)),
+        Command::Man(arguments) => on_first_process(|| manual::man(&arguments)),
         Command::Fit(arguments) => on_first_process(|| fit::run(&arguments)),
         Command::Study(arguments) => study::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),

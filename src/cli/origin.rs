@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::loading::Phase;
 use crate::output::{self, Left, Rows, checkpoint, left};
 use crate::parallel::agree;
-use crate::scene::{Scene, differences};
+use crate::scene::{Scene, differences, obstacles};
 use crate::snapshot::Snapshot;
 use crate::solve::{Counts, Position};
 
@@ -174,7 +174,7 @@ pub fn refuse_unfinished(out: &Path) -> Result<()> {
 
 fn refuse_another_scene(file: &Path, stored: &str, scene: &Scene) -> Result<()> {
     const SHOWN: usize = 4;
-    let found = differences(stored, &scene.to_toml());
+    let found = obstacles(stored, &scene.to_toml());
     if found.is_empty() {
         return Ok(());
     }

@@ -27,7 +27,7 @@ pub struct PlotArguments {
     #[arg(value_name = "FIGURE")]
     figures: Vec<String>,
     /// Where the figures go, made if need be
-    #[arg(long, value_name = "DIR", default_value = ".")]
+    #[arg(short, long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
     /// The power law E(t) = E t^-ALPHA / Gamma(1 - ALPHA) that the materials stand for: drawn beside them, and the
     /// unit of tractions and stresses

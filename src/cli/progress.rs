@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use super::launcher::is_on_a_terminal;
 use super::sweep::claim::Claim;
 use super::terminal::{is_quiet, tell};
 
@@ -107,8 +108,9 @@ impl Progress {
     }
 }
 
-/// Where a bar can be drawn, unless nothing is to be told: standard error when it is a terminal; under Open MPI's mpirun, which gives its children a
-/// pseudo-terminal as standard output in any case, that output when mpirun's own is a terminal.
+/// Where a bar can be drawn, unless nothing is to be told: standard error when it is a terminal; under a launcher that
+/// gives its processes a pseudo-terminal as standard output, as Open MPI's mpirun does in any case, that output when the
+/// launcher's own is a terminal. Elsewhere, as under Slurm's srun, which passes on whole lines, there is none.
 pub fn terminal() -> Option<ProgressDrawTarget> {
     if is_quiet() {
         return None;
@@ -116,8 +118,5 @@ pub fn terminal() -> Option<ProgressDrawTarget> {
     if std::io::stderr().is_terminal() {
         return Some(ProgressDrawTarget::stderr());
     }
-    let launcher = std::env::var("OMPI_COMM_WORLD_RANK").ok().map(|_| std::os::unix::process::parent_id())?;
-    let output = std::fs::read_link(format!("/proc/{launcher}/fd/1")).ok()?;
-    let is_terminal = output.starts_with("/dev/pts") || output.starts_with("/dev/tty");
-    (is_terminal && std::io::stdout().is_terminal()).then(ProgressDrawTarget::stdout)
+    (is_on_a_terminal() && std::io::stdout().is_terminal()).then(ProgressDrawTarget::stdout)
 }

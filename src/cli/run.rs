@@ -26,7 +26,7 @@ pub struct RunArguments {
     /// The scene
     scene: PathBuf,
     /// Where the results go [default: the scene's stem + .h5, in the current directory]
-    #[arg(long, value_name = "FILE.h5")]
+    #[arg(short, long, value_name = "FILE.h5")]
     out: Option<PathBuf>,
     /// Change a key of the scene, such as layer.depth=0.5 or phase.slide.velocity=0.1
     #[arg(long = "set", value_name = "KEY.PATH=VALUE")]

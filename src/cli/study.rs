@@ -35,7 +35,7 @@ pub struct StudyArguments {
     #[arg(long, value_name = "ERROR")]
     error: Option<f64>,
     /// Where the tables and the figure go, made if need be [default: the scene's stem + -study; with --error nowhere]
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
     telling: Telling,

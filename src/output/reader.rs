@@ -55,7 +55,7 @@ impl Results {
     }
 
     /// The file.
-    pub(super) fn path(&self) -> &Path {
+    pub fn path(&self) -> &Path {
         &self.path
     }
 
@@ -100,6 +100,22 @@ impl Results {
     /// Whether the file has the dataset, such as `history/energy/stored` or `bulk/stress`.
     pub fn has(&self, dataset: &str) -> bool {
         self.file.dataset(dataset).is_ok()
+    }
+
+    /// The names of all datasets of numbers, from the root.
+    pub fn datasets(&self) -> Result<Vec<String>> {
+        fn below(group: &hdf5::Group, found: &mut Vec<String>) -> hdf5::Result<()> {
+            for set in group.datasets()? {
+                let kind = set.dtype()?;
+                if kind.is::<f64>() || kind.is::<i64>() {
+                    found.push(set.name().trim_start_matches('/').to_owned());
+                }
+            }
+            group.groups()?.iter().try_for_each(|group| below(group, found))
+        }
+        let mut found = Vec::new();
+        below(&self.file, &mut found).map_err(|error| self.missing("list of datasets", &error))?;
+        Ok(found)
     }
 
     /// A column of the history as numbers: `time`, `normal_force`, `energy/stored`, ... As many as there are times. Of a vector
@@ -160,7 +176,8 @@ impl Results {
         Ok(field)
     }
 
-    pub(super) fn field(&self, dataset: &str) -> Result<Field> {
+    /// A dataset, named from the root.
+    pub fn field(&self, dataset: &str) -> Result<Field> {
         let read = || -> hdf5::Result<Field> {
             let set = self.file.dataset(dataset)?;
             let shape = set.shape();

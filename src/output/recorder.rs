@@ -153,6 +153,19 @@ impl Recorder {
         Ok(())
     }
 
+    /// Sets the attribute `scene`, where it is another: keys of `[output]` may have changed. The file is copied for it.
+    pub fn set_scene(&self, scene: &str) -> Result<()> {
+        let mut state = self.shared.lock();
+        state.check()?;
+        state.flush()?;
+        if Results::open(state.store.path()).and_then(|results| results.text("scene")).is_ok_and(|there| there == scene)
+        {
+            return Ok(());
+        }
+        state.store = state.store.with_scene(scene)?;
+        Ok(())
+    }
+
     /// All rows of the history so far.
     pub fn rows(&self) -> Result<Vec<HistoryRow>> {
         let mut state = self.shared.lock();

@@ -307,6 +307,15 @@ impl Store {
         self.changed("take warnings", &replace)
     }
 
+    /// The same file with this text as the attribute `scene`.
+    pub(super) fn with_scene(&self, scene: &str) -> Result<Self> {
+        let replace = |file: &hdf5::File| {
+            file.delete_attr("scene")?;
+            skeleton::text(file, "scene", scene)
+        };
+        self.changed("take the scene", &replace)
+    }
+
     /// The same file after a change by the library, for which the file is copied and put in the place of the old one by
     /// a rename, so that at every moment one of the two is there.
     fn changed(&self, what: &str, change: &dyn Fn(&hdf5::File) -> hdf5::Result<()>) -> Result<Self> {

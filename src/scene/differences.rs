@@ -9,6 +9,28 @@ use super::keys;
 /// Keys that change nothing in what is computed or kept of it.
 const WITHOUT_EFFECT: [&str; 2] = ["title", "output.checkpoint_every"];
 
+/// Keys that decide only which states are kept from then on.
+const OF_WHAT_IS_KEPT: [&str; 2] = ["output.interface_every", "output.bulk_at"];
+
+/// The differences that keep a run from going on where another left it. Which states are kept may change, as long as steps
+/// end where they did (the times in `bulk_at` stay, its names of phases need not) and the file has a place for them.
+pub fn obstacles(there: &str, here: &str) -> Vec<String> {
+    let moments = |scene: &str| -> Vec<Value> {
+        leaves(scene)
+            .into_iter()
+            .filter(|(path, _)| path.starts_with("output.bulk_at."))
+            .map(|(_, value)| value)
+            .collect()
+    };
+    let times = |moments: &[Value]| moments.iter().filter(|value| !value.is_str()).cloned().collect::<Vec<_>>();
+    let (before, now) = (moments(there), moments(here));
+    let same_steps = times(&before) == times(&now) && before.is_empty() == now.is_empty();
+    let [interface, bulk] = OF_WHAT_IS_KEPT;
+    let mut found = differences(there, here);
+    found.retain(|path| !(path.starts_with(interface) || path.starts_with(bulk) && same_steps));
+    found
+}
+
 /// For each key path at which the scenes differ, `path: 1.0 there, 2.0 here`. Both are resolved scenes as TOML.
 pub fn differences(there: &str, here: &str) -> Vec<String> {
     let (there, here) = (leaves(there), leaves(here));

@@ -6,6 +6,7 @@ use std::path::Path;
 use toml::{Table, Value};
 
 use super::friction::tables_in;
+use super::keys::tables::MATERIAL_FILE;
 use super::keys::{self, Section};
 use super::read::{self, material};
 use crate::error::{Error, Result};
@@ -121,9 +122,9 @@ fn expand(table: &mut Table, path: &str, scene: &Path, load: Load) -> Result<()>
 /// The `[material]` table of a material file, which must be one that a scene could have.
 fn whole(text: &str, file: &Path) -> Result<Table> {
     let table = read::parse(text, file)?;
-    let root = Section::root(file, &table);
+    let root = Section::root(file, &table, &MATERIAL_FILE);
     let section = root.section("material")?;
-    root.only(&["material"])?;
+    root.only_known()?;
     if section.has("file") {
         return Err(section.error("file", "a material file cannot take another one; write its table in full"));
     }

@@ -1,5 +1,9 @@
 //! A table of the scene while it is read: typed access by key, with messages that name the dotted path of the key,
-//! what is wrong and what would be accepted. It knows TOML, not scenes.
+//! what is wrong and what would be accepted. Which keys there are, and what each takes, is in [`tables`].
+
+pub(crate) mod kind;
+pub(crate) mod quantity;
+pub(crate) mod tables;
 
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -7,28 +11,10 @@ use std::path::Path;
 use nalgebra::Vector2;
 use toml::{Table, Value};
 
+use kind::{Key, Keys, Kind};
+use quantity::Quantity;
+
 use crate::error::{Error, Result};
-
-/// What a number must be, besides finite.
-#[derive(Clone, Copy)]
-pub(super) struct Quantity {
-    /// Completes "must be ...", with the unit.
-    pub what: &'static str,
-    /// Whether a finite number is accepted.
-    pub accepts: fn(f64) -> bool,
-}
-
-impl Quantity {
-    /// Any finite number.
-    pub const fn any(what: &'static str) -> Self {
-        Self { what, accepts: |_| true }
-    }
-
-    /// A number above zero.
-    pub const fn positive(what: &'static str) -> Self {
-        Self { what, accepts: |value| value > 0.0 }
-    }
-}
 
 /// One table of the scene, and where it is.
 #[derive(Clone)]
@@ -36,12 +22,23 @@ pub(super) struct Section<'a> {
     file: &'a Path,
     path: String,
     table: &'a Table,
+    keys: &'static Keys,
 }
 
 impl<'a> Section<'a> {
     /// The whole file.
-    pub fn root(file: &'a Path, table: &'a Table) -> Self {
-        Self { file, path: String::new(), table }
+    pub fn root(file: &'a Path, table: &'a Table, keys: &'static Keys) -> Self {
+        Self { file, path: String::new(), table, keys }
+    }
+
+    /// What the table says of a key; that it says nothing is a defect.
+    fn key(&self, key: &str) -> Result<&'static Key> {
+        self.keys.get(key).ok_or_else(|| Error::Internal(format!("{} is not in the tables of keys", self.path_of(key))))
+    }
+
+    /// Completes "must be ..." for a key.
+    pub fn what(&self, key: &str) -> &'static str {
+        self.keys.get(key).map_or("", |key| key.kind.what())
     }
 
     /// The same table, called `path` in messages.
@@ -69,12 +66,14 @@ impl<'a> Section<'a> {
         self.table
     }
 
-    /// Refuses every key but these. To be called before anything is read, so that a misspelt key is reported as such
-    /// and not as a missing one.
-    pub fn only(&self, known: &[&str]) -> Result<()> {
+    /// Refuses every key that the table does not have. To be called before anything is read, so that a misspelt key is
+    /// reported as such and not as a missing one.
+    pub fn only_known(&self) -> Result<()> {
+        let word = self.keys.decides.as_ref().and_then(|decides| self.table.get(decides.by)?.as_str());
+        let known = self.keys.beside(word);
         match self.table.keys().find(|key| !known.contains(&key.as_str())) {
             None => Ok(()),
-            Some(key) => Err(self.error(key, format!("unknown key; {}", advice(key, known, "known keys")))),
+            Some(key) => Err(self.error(key, format!("unknown key; {}", advice(key, &known, "known keys")))),
         }
     }
 
@@ -87,47 +86,61 @@ impl<'a> Section<'a> {
     }
 
     /// A number that must be there.
-    pub fn number(&self, key: &str, quantity: Quantity) -> Result<f64> {
-        self.optional_number(key, quantity)?.ok_or_else(|| self.missing(key, quantity.what))
+    pub fn number(&self, key: &str) -> Result<f64> {
+        self.optional_number(key)?.ok_or_else(|| self.missing(key, self.what(key)))
     }
 
     /// A number that may be absent. Whole numbers are numbers.
-    pub fn optional_number(&self, key: &str, quantity: Quantity) -> Result<Option<f64>> {
+    pub fn optional_number(&self, key: &str) -> Result<Option<f64>> {
+        let quantity = self.quantity(key)?;
         let Some(value) = self.table.get(key) else { return Ok(None) };
         match number(value) {
             Some(number) if !number.is_finite() => Err(self.must_be(key, &format!("finite: {}", quantity.what), value)),
-            Some(number) if (quantity.accepts)(number) => Ok(Some(number)),
+            Some(number) if quantity.accepts(number) => Ok(Some(number)),
             _ => Err(self.must_be(key, quantity.what, value)),
         }
     }
 
+    /// What a number at the key must be.
+    fn quantity(&self, key: &str) -> Result<Quantity> {
+        match self.key(key)?.kind {
+            Kind::Number(quantity) | Kind::OneOrTwo(quantity) | Kind::NumberOrFormula(quantity) => Ok(quantity),
+            _ => Err(self.not_a("number", key)),
+        }
+    }
+
     /// One number, or an array of one for x and one for y. Absent is none.
-    pub fn one_or_two(&self, key: &str, quantity: Quantity) -> Result<Option<Vec<f64>>> {
+    pub fn one_or_two(&self, key: &str) -> Result<Option<Vec<f64>>> {
+        let quantity = self.quantity(key)?;
         let Some(Value::Array(values)) = self.table.get(key) else {
-            return Ok(self.optional_number(key, quantity)?.map(|number| vec![number]));
+            return Ok(self.optional_number(key)?.map(|number| vec![number]));
         };
-        let what = format!("{}, or an array of two, for x and for y", quantity.what);
-        let accepted = |value: &Value| number(value).filter(|number| number.is_finite() && (quantity.accepts)(*number));
+        let accepted = |value: &Value| number(value).filter(|number| number.is_finite() && quantity.accepts(*number));
         match values.iter().map(accepted).collect::<Option<Vec<f64>>>() {
             Some(numbers) if numbers.len() == 2 => Ok(Some(numbers)),
-            _ => Err(self.error(key, format!("must be {what}"))),
+            _ => Err(self.error(key, format!("must be {}, or an array of two, for x and for y", quantity.what))),
         }
     }
 
     /// A vector along the face: a number is its component along x.
-    pub fn along_the_face(&self, key: &str, quantity: Quantity) -> Result<Option<Vector2<f64>>> {
-        let numbers = self.one_or_two(key, quantity)?;
+    pub fn along_the_face(&self, key: &str) -> Result<Option<Vector2<f64>>> {
+        let numbers = self.one_or_two(key)?;
         Ok(numbers.map(|numbers| Vector2::new(numbers[0], numbers.get(1).copied().unwrap_or(0.0))))
     }
 
     /// A whole number that must be there.
-    pub fn count(&self, key: &str, what: &str, range: RangeInclusive<usize>) -> Result<usize> {
-        self.optional_count(key, what, range)?.ok_or_else(|| self.missing(key, what))
+    pub fn count(&self, key: &str) -> Result<usize> {
+        self.optional_count(key)?.ok_or_else(|| self.missing(key, self.what(key)))
     }
 
     /// A whole number that may be absent.
-    pub fn optional_count(&self, key: &str, what: &str, range: RangeInclusive<usize>) -> Result<Option<usize>> {
-        self.table.get(key).map(|value| self.whole(key, value, what, range)).transpose()
+    pub fn optional_count(&self, key: &str) -> Result<Option<usize>> {
+        let Kind::Count(what, [least, most]) = self.key(key)?.kind else { return Err(self.not_a("count", key)) };
+        self.table.get(key).map(|value| self.whole(key, value, what, least..=most)).transpose()
+    }
+
+    fn not_a(&self, kind: &str, key: &str) -> Error {
+        Error::Internal(format!("{} is no {kind} in the tables of keys", self.path_of(key)))
     }
 
     /// True or false, or nothing.
@@ -139,12 +152,16 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// So many whole numbers, which must be there.
-    pub fn counts(&self, key: &str, what: &str, (many, range): (usize, RangeInclusive<usize>)) -> Result<Vec<usize>> {
+    /// The whole numbers of a body with so many directions along its face, which must be there.
+    pub fn cells(&self, key: &str, directions: usize) -> Result<Vec<usize>> {
+        let Kind::Cells(whats, [least, most]) = self.key(key)?.kind else {
+            return Err(self.not_a("list of cells", key));
+        };
+        let what = whats.get(directions - 1).copied().unwrap_or_default();
         match self.table.get(key) {
             None => Err(self.missing(key, what)),
-            Some(Value::Array(values)) if values.len() == many => {
-                values.iter().map(|value| self.whole(key, value, what, range.clone())).collect()
+            Some(Value::Array(values)) if values.len() == directions + 1 => {
+                values.iter().map(|value| self.whole(key, value, what, least..=most)).collect()
             }
             Some(Value::Array(values)) => Err(self.error(key, format!("must be {what}, got {} values", values.len()))),
             Some(value) => Err(self.must_be(key, what, value)),
@@ -164,7 +181,8 @@ impl<'a> Section<'a> {
     }
 
     /// A text that may be absent. Control characters are refused: the text goes to HDF5 and to the terminal.
-    pub fn optional_text(&self, key: &str, what: &str) -> Result<Option<String>> {
+    pub fn optional_text(&self, key: &str) -> Result<Option<String>> {
+        let what = self.key(key)?.kind.what();
         match self.table.get(key) {
             None => Ok(None),
             Some(Value::String(text)) if !text.chars().any(char::is_control) => Ok(Some(text.clone())),
@@ -173,10 +191,10 @@ impl<'a> Section<'a> {
     }
 
     /// A name that may be absent: a text, or a whole number as the text that it stands for.
-    pub fn optional_label(&self, key: &str, what: &str) -> Result<Option<String>> {
+    pub fn optional_label(&self, key: &str) -> Result<Option<String>> {
         match self.table.get(key).and_then(label) {
             Some(number) => Ok(Some(number)),
-            None => self.optional_text(key, what),
+            None => self.optional_text(key),
         }
     }
 
@@ -187,6 +205,10 @@ impl<'a> Section<'a> {
 
     /// One of the `accepted` words, or nothing.
     pub fn optional_choice<T: Copy>(&self, key: &str, accepted: &[(&str, T)], later: &[&str]) -> Result<Option<T>> {
+        let known = self.key(key)?.kind.words().unwrap_or_default();
+        if !accepted.iter().all(|(word, _)| known.contains(word)) {
+            return Err(self.not_a("choice of these words", key));
+        }
         let Some(value) = self.table.get(key) else { return Ok(None) };
         let word = value.as_str().unwrap_or_default();
         if let Some((_, choice)) = accepted.iter().find(|(name, _)| *name == word) {
@@ -213,29 +235,36 @@ impl<'a> Section<'a> {
     pub fn optional_section(&self, key: &str) -> Result<Option<Section<'a>>> {
         match self.table.get(key) {
             None => Ok(None),
-            Some(Value::Table(table)) => Ok(Some(Section { file: self.file, path: self.path_of(key), table })),
+            Some(Value::Table(table)) => Ok(Some(self.child(key, self.path_of(key), table)?)),
             Some(value) => Err(self.must_be(key, "a table", value)),
         }
     }
 
     /// An array of tables, numbered from 0 in messages; empty when absent.
-    pub fn sections(&self, key: &str, what: &str) -> Result<Vec<Section<'a>>> {
+    pub fn sections(&self, key: &str) -> Result<Vec<Section<'a>>> {
+        let what = self.what(key);
         let values = match self.table.get(key) {
             None => return Ok(Vec::new()),
             Some(Value::Array(values)) => values,
             Some(value) => return Err(self.must_be(key, what, value)),
         };
         let section = |(index, value): (usize, &'a Value)| match value {
-            Value::Table(table) => {
-                Ok(Section { file: self.file, path: format!("{}.{index}", self.path_of(key)), table })
-            }
+            Value::Table(table) => self.child(key, format!("{}.{index}", self.path_of(key)), table),
             value => Err(self.error(&format!("{key}.{index}"), format!("must be a table, got {}", show(value)))),
         };
         values.iter().enumerate().map(section).collect()
     }
 
+    /// A table at one of the keys.
+    fn child(&self, key: &str, path: String, table: &'a Table) -> Result<Section<'a>> {
+        // Tables whose keys are paths of a scene have none of their own.
+        let keys = self.key(key)?.kind.table().unwrap_or(&tables::NONE);
+        Ok(Section { file: self.file, path, table, keys })
+    }
+
     /// An array of anything; empty when absent.
-    pub fn values(&self, key: &str, what: &str) -> Result<&'a [Value]> {
+    pub fn values(&self, key: &str) -> Result<&'a [Value]> {
+        let what = self.key(key)?.kind.what();
         match self.table.get(key) {
             None => Ok(&[]),
             Some(Value::Array(values)) => Ok(values),

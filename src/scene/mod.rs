@@ -15,6 +15,7 @@ mod overrides;
 mod penalty;
 mod read;
 mod resolved;
+pub mod schema;
 pub mod sweep;
 
 use std::path::PathBuf;
@@ -23,7 +24,7 @@ use nalgebra::Vector2;
 use serde::Serialize;
 
 pub use checks::whole_periods;
-pub use differences::differences;
+pub use differences::{differences, obstacles};
 pub use friction::{Coefficient, Friction, Law};
 pub use include::{Load, include, open};
 pub use indenter::{Detrend, Extend, Indenter, Reading, Rms, Seam};

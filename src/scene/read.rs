@@ -12,7 +12,8 @@ use std::path::Path;
 
 use toml::Table;
 
-use super::keys::{self, Quantity, Section};
+use super::keys::tables::{self, QUADRATURES, STRATEGIES};
+use super::keys::{self, Section};
 use super::{
     Body, Contact, Load, Material, Output, Penalty, Phase, Quadrature, Scene, Solver, Source, Strategy, When, checks,
     include, overrides, penalty_for, shortest_step,
@@ -75,15 +76,13 @@ fn table_of_several(text: &str, start: usize) -> Option<&'static str> {
 pub fn from_table(table: &Table, file: &Path) -> Result<Scene> {
     let mut table = table.clone();
     include::include(&mut table, file, &include::open)?;
-    let root = Section::root(file, &table);
+    let root = Section::root(file, &table, &tables::SCENE);
     root.later(&[
         ("element", "give it in [layer] or [mesh]"),
         ("temperature", NO_TEMPERATURE),
         ("reference_temperature", NO_TEMPERATURE),
     ])?;
-    root.only(&[
-        "title", "layer", "mesh", "material", "indenter", "contact", "friction", "mount", "phase", "solver", "output",
-    ])?;
+    root.only_known()?;
     let title = title(&root, file)?;
     let body = body::read(&root, file)?;
     // The history says over which times the materials must hold.
@@ -112,35 +111,25 @@ const NO_TEMPERATURE: &str = "give temperature in [material]: it is the same eve
 
 fn title(root: &Section, file: &Path) -> Result<String> {
     let stem = || file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(root.optional_text("title", "a text on one line")?.unwrap_or_else(stem))
+    Ok(root.optional_text("title")?.unwrap_or_else(stem))
 }
 
-/// Whole numbers from 1.
-const COUNT: std::ops::RangeInclusive<usize> = 1..=usize::MAX;
-
-const TOLERANCE: Quantity =
-    Quantity { what: "a relative tolerance above 0 and below 1", accepts: |value| value > 0.0 && value < 1.0 };
-
 fn contact(section: &Section, body: &Body, materials: &[Material], phases: &[Phase]) -> Result<Contact> {
-    const QUADRATURES: [(&str, Quadrature); 2] = [("nodal", Quadrature::Nodal), ("gauss", Quadrature::Gauss)];
-
-    section.only(&["penalty", "tolerance", "quadrature", "method", "augmentation_tolerance"])?;
+    section.only_known()?;
     let quadrature = section.optional_choice("quadrature", &QUADRATURES, &[])?.unwrap_or(Quadrature::Nodal);
     Ok(Contact { penalty: penalty(section, body, materials, phases)?, quadrature })
 }
 
 /// The penalty, given as itself or as the compliance that it may add; none where nothing is said, or "augmented".
 fn penalty(section: &Section, body: &Body, materials: &[Material], phases: &[Phase]) -> Result<Option<Penalty>> {
-    const PENALTY: Quantity = Quantity::positive("a positive stiffness in Pa/m");
-
     let augmented = section.optional_choice("method", &[("penalty", false), ("augmented", true)], &[])?;
     // Multipliers began with a penalty and ended at a tolerance, which decide nothing any more.
-    let leftover = section.optional_number("augmentation_tolerance", TOLERANCE)?;
+    let leftover = section.optional_number("augmentation_tolerance")?;
     if augmented != Some(true) && leftover.is_some() {
         return Err(section.error("augmentation_tolerance", "is for method = \"augmented\""));
     }
-    let penalty = section.optional_number("penalty", PENALTY)?;
-    let tolerance = section.optional_number("tolerance", TOLERANCE)?;
+    let penalty = section.optional_number("penalty")?;
+    let tolerance = section.optional_number("tolerance")?;
     match (penalty, tolerance) {
         (Some(_), Some(_)) => Err(section.error("tolerance", "give penalty or tolerance, not both")),
         _ if augmented == Some(true) => Ok(None),
@@ -180,25 +169,20 @@ fn preset(solver: &Section) -> Result<Option<Preset>> {
 }
 
 fn solver(section: Option<&Section>, preset: Option<Preset>) -> Result<Solver> {
-    const STRATEGIES: [(&str, Strategy); 3] =
-        [("auto", Strategy::Auto), ("monolithic", Strategy::Monolithic), ("condensed", Strategy::Condensed)];
-
     let default = Solver { strategy: Strategy::Auto, tolerance: preset.map_or(1e-8, |preset| preset.newton) };
     let Some(section) = section else { return Ok(default) };
-    section.only(&["strategy", "tolerance", "preset"])?;
+    section.only_known()?;
     Ok(Solver {
         strategy: section.optional_choice("strategy", &STRATEGIES, &[])?.unwrap_or(default.strategy),
-        tolerance: section.optional_number("tolerance", TOLERANCE)?.unwrap_or(default.tolerance),
+        tolerance: section.optional_number("tolerance")?.unwrap_or(default.tolerance),
     })
 }
 
 fn output(section: Option<&Section>) -> Result<Output> {
-    const STEPS: &str = "a whole number of steps, at least 0";
-
     let default = Output { interface_every: 1, bulk_at: Vec::new(), checkpoint_every: 0, energy: true };
     let Some(section) = section else { return Ok(default) };
-    section.only(&["interface_every", "bulk_at", "checkpoint_every", "energy"])?;
-    let count = |key: &str| section.optional_count(key, STEPS, 0..=usize::MAX);
+    section.only_known()?;
+    let count = |key: &str| section.optional_count(key);
     Ok(Output {
         interface_every: count("interface_every")?.unwrap_or(default.interface_every),
         bulk_at: bulk_at(section)?,
@@ -208,12 +192,10 @@ fn output(section: Option<&Section>) -> Result<Output> {
 }
 
 fn bulk_at(section: &Section) -> Result<Vec<When>> {
-    const WHAT: &str = "names of phases and times in s";
-
     let moment = |(index, value): (usize, &toml::Value)| match (value.as_str(), keys::number(value)) {
         (Some(name), _) => Ok(When::PhaseEnd(name.to_owned())),
         (_, Some(time)) if time.is_finite() && time > 0.0 => Ok(When::Time(time)),
         _ => Err(section.must_be(&format!("bulk_at.{index}"), "the name of a phase or a positive time in s", value)),
     };
-    section.values("bulk_at", &format!("an array of {WHAT}"))?.iter().enumerate().map(moment).collect()
+    section.values("bulk_at")?.iter().enumerate().map(moment).collect()
 }

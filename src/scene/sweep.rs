@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use toml::{Table, Value};
 
-use super::keys::{self, Section};
+use super::keys::{self, Section, tables};
 use super::{Scene, from_table, get, include, open, overrides, parse, set};
 use crate::error::{Error, Result};
 
@@ -50,8 +50,8 @@ fn label(keys: &[String], values: &[String]) -> String {
 /// `text` is the content of `file`. The scene, and the files that whole tables come from, are looked for beside it.
 pub fn read(text: &str, file: &Path) -> Result<String> {
     let table = parse(text, file)?;
-    let root = Section::root(file, &table);
-    root.only(&["scene", "vary", "follow"])?;
+    let root = Section::root(file, &table, &tables::SWEEP);
+    root.only_known()?;
     let scene_file = match table.get("scene") {
         Some(Value::String(name)) => beside(file, name),
         Some(other) => return Err(root.must_be("scene", "the name of a scene file", other)),
@@ -129,8 +129,7 @@ const VARY: &str = "the keys that vary, such as \"phase.slide.velocity\" = [0.01
 /// `[vary]`, or each `[[vary]]`: all have the same keys in the same order.
 fn vary(root: &Section) -> Result<Vec<Block>> {
     let several = matches!(root.table().get("vary"), Some(Value::Array(_)));
-    let sections =
-        if several { root.sections("vary", VARY)? } else { root.optional_section("vary")?.into_iter().collect() };
+    let sections = if several { root.sections("vary")? } else { root.optional_section("vary")?.into_iter().collect() };
     let name = |block: usize| if several { format!("vary.{block}") } else { "vary".to_owned() };
     let blocks: Vec<Block> = sections.iter().map(block).collect::<Result<_>>()?;
     let first = blocks.first().ok_or_else(|| root.missing("vary", VARY))?;

@@ -28,7 +28,7 @@ pub struct FitArgs {
     #[arg(long, value_name = "N|auto", default_value = "auto")]
     pub arms: Arms,
     /// Write the material to this file, for a scene to take by `material = { file = "..." }`
-    #[arg(long, value_name = "FILE.toml")]
+    #[arg(short, long, value_name = "FILE.toml")]
     pub out: Option<PathBuf>,
     /// Draw the series beside the data and the shorter series into this directory, as PNG and SVG
     #[arg(long, value_name = "DIR")]

@@ -42,7 +42,7 @@ pub struct SweepArguments {
     /// The sweep
     sweep: PathBuf,
     /// The directory of the results [default: the sweep's stem, in the current directory]
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Run one case only, counted from 0
     #[arg(long, value_name = "I")]
@@ -53,6 +53,8 @@ pub struct SweepArguments {
     /// Print an sbatch script that runs the cases as a job array; solve nothing
     #[arg(long, conflicts_with = "case")]
     slurm: bool,
+    #[command(flatten)]
+    batch: slurm::Batch,
     /// Ranks that solve a case together [default: from the size of the problem]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     ranks_per_case: Option<u32>,
@@ -85,7 +87,7 @@ fn print(arguments: &SweepArguments) -> Result<()> {
     }
     if arguments.slurm {
         let ranks = arguments.ranks_per_case.map_or_else(|| ranks_per_case(&sweep), |ranks| ranks as usize);
-        terminal::answer(slurm::script(&arguments.sweep, &out, sweep.cases.len(), ranks));
+        terminal::answer(slurm::script(&arguments.sweep, &out, (sweep.cases.len(), ranks), &arguments.batch));
         return Ok(());
     }
     let folder = Folder::at(&out);

@@ -5,11 +5,9 @@ use std::path::Path;
 use super::material;
 use crate::error::Result;
 use crate::rheology::Loading;
-use crate::scene::keys::{Quantity, Section, label};
+use crate::scene::keys::tables::{IN_PLANE, IN_SPACE, SIDES};
+use crate::scene::keys::{Section, label};
 use crate::scene::{Body, Element, Layer, Material, MeshFile, Sides, Span};
-
-const IN_PLANE: [(&str, Element); 2] = [("q4", Element::Quad4), ("q4_bbar", Element::Quad4Bbar)];
-const IN_SPACE: [(&str, Element); 2] = [("h8", Element::Hex8), ("h8_bbar", Element::Hex8Bbar)];
 
 /// One of the two tables; `file` is the scene's.
 pub(super) fn read(root: &Section, file: &Path) -> Result<Body> {
@@ -22,21 +20,12 @@ pub(super) fn read(root: &Section, file: &Path) -> Result<Body> {
 }
 
 fn layer(section: &Section) -> Result<Layer> {
-    const LENGTH: Quantity = Quantity::positive("a positive length in m");
-    // Beyond these the cells at one face have no height to speak of.
-    const GRADING: Quantity =
-        Quantity { what: "a ratio of cell heights from 1e-6 to 1e6", accepts: |ratio| (1e-6..=1e6).contains(&ratio) };
-    const CELLS: [&str; 2] = [
-        "two whole numbers, each at least 1: [along the face, through the depth]",
-        "three whole numbers, each at least 1: [along x, along y, through the depth]",
-    ];
-
-    section.only(&["width", "depth", "cells", "grading", "sides", "element"])?;
-    let widths = section.one_or_two("width", LENGTH)?.ok_or_else(|| section.missing("width", LENGTH.what))?;
+    section.only_known()?;
+    let widths = section.one_or_two("width")?.ok_or_else(|| section.missing("width", section.what("width")))?;
     let directions = widths.len();
-    let depth = section.number("depth", LENGTH)?;
-    let cells = section.counts("cells", CELLS[directions - 1], (directions + 1, super::COUNT))?;
-    let grading = section.optional_number("grading", GRADING)?.unwrap_or(1.0);
+    let depth = section.number("depth")?;
+    let cells = section.cells("cells", directions)?;
+    let grading = section.optional_number("grading")?.unwrap_or(1.0);
     let sides = sides(section, directions)?;
     let spans = widths.iter().zip(&cells).zip(sides);
     Ok(Layer {
@@ -53,16 +42,12 @@ fn layer(section: &Section) -> Result<Layer> {
 
 /// Of all directions, or of each.
 fn sides(section: &Section, directions: usize) -> Result<Vec<Sides>> {
-    const SIDES: [(&str, Sides); 4] =
-        [("periodic", Sides::Periodic), ("free", Sides::Free), ("roller", Sides::Roller), ("fixed", Sides::Fixed)];
-    const WHAT: &str = "the sides of both directions, or an array of those along x and of those along y";
-
     if !section.table().get("sides").is_some_and(toml::Value::is_array) {
         return Ok(vec![section.choice("sides", &SIDES, &[])?; directions]);
     }
     let known = |value: &toml::Value| SIDES.into_iter().find(|(name, _)| value.as_str() == Some(name));
     let sides: Option<Vec<Sides>> =
-        section.values("sides", WHAT)?.iter().map(|value| known(value).map(|(_, sides)| sides)).collect();
+        section.values("sides")?.iter().map(|value| known(value).map(|(_, sides)| sides)).collect();
     match sides.filter(|sides| sides.len() == directions && directions == 2) {
         Some(sides) => Ok(sides),
         None => {
@@ -74,17 +59,15 @@ fn sides(section: &Section, directions: usize) -> Result<Vec<Sides>> {
 }
 
 fn mesh(section: &Section, scene: &Path) -> Result<MeshFile> {
-    const FILE: &str = "the path of a Gmsh .msh file, relative to the scene";
-    const CONTACT: &str = "the name or number of the physical curve that is the contact face";
-
     section.later(&[("sides", "name the curves that are held: fixed, roller")])?;
-    section.only(&["file", "contact", "fixed", "roller", "element"])?;
-    let relative = section.optional_text("file", FILE)?.ok_or_else(|| section.missing("file", FILE))?;
+    section.only_known()?;
+    let relative = section.optional_text("file")?.ok_or_else(|| section.missing("file", section.what("file")))?;
     let joined = scene.parent().unwrap_or(Path::new("")).join(relative);
     // Only an empty path has no absolute form, or a directory that is gone.
-    let file =
-        std::path::absolute(&joined).map_err(|error| section.error("file", format!("must be {FILE}: {error}")))?;
-    let contact = section.optional_label("contact", CONTACT)?.ok_or_else(|| section.missing("contact", CONTACT))?;
+    let file = std::path::absolute(&joined)
+        .map_err(|error| section.error("file", format!("must be {}: {error}", section.what("file"))))?;
+    let contact =
+        section.optional_label("contact")?.ok_or_else(|| section.missing("contact", section.what("contact")))?;
     let fixed = names(section, "fixed")?;
     if fixed.is_empty() {
         let wrong = if section.has("fixed") { "empty" } else { "missing" };
@@ -98,10 +81,8 @@ fn mesh(section: &Section, scene: &Path) -> Result<MeshFile> {
 
 /// An array of names or numbers of physical curves, each once; empty when absent.
 fn names(section: &Section, key: &str) -> Result<Vec<String>> {
-    const WHAT: &str = "an array of names or numbers of physical curves";
-
     let mut names: Vec<String> = Vec::new();
-    for (index, value) in section.values(key, WHAT)?.iter().enumerate() {
+    for (index, value) in section.values(key)?.iter().enumerate() {
         let at = format!("{key}.{index}");
         match value.as_str().map(str::to_owned).or_else(|| label(value)) {
             Some(name) if names.contains(&name) => {
@@ -116,13 +97,13 @@ fn names(section: &Section, key: &str) -> Result<Vec<String>> {
 
 /// `[material]`, or one `[[material]]` for each stratum of a layer or region of a mesh, in a loading history.
 pub(super) fn materials(root: &Section, body: &Body, loading: Option<&Loading>) -> Result<Vec<Material>> {
-    let Ok(sections) = root.sections("material", "") else {
+    let Ok(sections) = root.sections("material") else {
         return Ok(vec![filling(&root.section("material")?, (body, true), loading)?]);
     };
     let count = sections.len();
     let mut list: Vec<Material> = Vec::new();
     for (index, section) in sections.into_iter().enumerate() {
-        let region = section.optional_label("region", REGION)?;
+        let region = section.optional_label("region")?;
         let known = list.iter().position(|other| region.is_some() && other.region == region);
         if let Some(first) = known {
             return Err(section.error("region", format!("is the region of material {first} too; give another")));
@@ -133,26 +114,22 @@ pub(super) fn materials(root: &Section, body: &Body, loading: Option<&Loading>) 
         };
         let material = filling(&section, (body, index + 1 == count), loading)?;
         if matches!(body, Body::Mesh(_)) && region.is_none() && count > 1 {
-            return Err(section.missing("region", REGION));
+            return Err(section.missing("region", section.what("region")));
         }
         list.push(material);
     }
     if list.is_empty() { Err(root.missing("material", "the [material] table")) } else { Ok(list) }
 }
 
-const REGION: &str = "the name or number of the physical surface that it fills";
-
 /// A material and what it fills of the body; `last` if none follows.
 fn filling(section: &Section, (body, last): (&Body, bool), loading: Option<&Loading>) -> Result<Material> {
-    let material = material::read(section, &["region", "thickness"], loading)?;
-    let (region, thickness) = (section.optional_label("region", REGION)?, thickness(section, body, last)?);
+    let material = material::read(section, loading)?;
+    let (region, thickness) = (section.optional_label("region")?, thickness(section, body, last)?);
     Ok(Material { region, thickness, ..material })
 }
 
 /// The thickness of a stratum, m: of all but the lowest.
 fn thickness(section: &Section, body: &Body, last: bool) -> Result<Option<f64>> {
-    const THICKNESS: Quantity = Quantity::positive("a positive thickness in m, from the contact face down");
-
     match body {
         Body::Mesh(_) if section.has("thickness") => {
             Err(section.error("thickness", "is for the strata of a [layer]; give region, a physical surface"))
@@ -163,7 +140,7 @@ fn thickness(section: &Section, body: &Body, last: bool) -> Result<Option<f64>> 
         Body::Layer(_) if last && section.has("thickness") => {
             Err(section.error("thickness", "remove it: the last material fills the rest of the layer"))
         }
-        Body::Layer(_) if !last => section.number("thickness", THICKNESS).map(Some),
+        Body::Layer(_) if !last => section.number("thickness").map(Some),
         _ => Ok(None),
     }
 }

@@ -3,7 +3,8 @@
 use nalgebra::Vector2;
 
 use crate::error::Result;
-use crate::scene::keys::{Quantity, Section};
+use crate::scene::keys::Section;
+use crate::scene::keys::tables::{DETRENDS, EXTENDS, SEAMS};
 use crate::scene::{Detrend, Extend, Indenter, Reading, Rms, Seam};
 use crate::table::{self, Choice, Unit};
 
@@ -36,83 +37,33 @@ const PROFILES: [(&str, Profile); 11] = [
     ("waves", Profile::Waves),
 ];
 
-const LENGTH: Quantity = Quantity::positive("a positive length in m");
-const POSITION: Quantity = Quantity::any("a position in m");
-const SLOPE: Quantity = Quantity::positive("a positive slope");
-
 /// Reads the indenter.
 pub(super) fn read(section: &Section) -> Result<Indenter> {
-    // The profile decides which keys there are; where it is absent, perhaps it is misspelt.
-    if !section.has("profile") {
-        section.only(&[
-            "profile",
-            "amplitude",
-            "wavelength",
-            "radius",
-            "centre",
-            "slope",
-            "formula",
-            "file",
-            "columns",
-            "unit",
-            "x_unit",
-            "z_unit",
-            "invert",
-            "detrend",
-            "offset",
-            "seam",
-            "extend",
-            "period",
-            "hurst",
-            "rms_slope",
-            "rms_height",
-            "shortest",
-            "longest",
-            "seed",
-        ])?;
-    }
+    section.only_known()?;
     match section.choice("profile", &PROFILES, &[])? {
         Profile::Harmonic => {
-            section.only(&["profile", "amplitude", "wavelength"])?;
-            let amplitude = section.number("amplitude", LENGTH)?;
-            Ok(Indenter::Harmonic { amplitude, wavelength: section.number("wavelength", LENGTH)? })
+            let amplitude = section.number("amplitude")?;
+            Ok(Indenter::Harmonic { amplitude, wavelength: section.number("wavelength")? })
         }
         Profile::Parabola => {
-            section.only(&["profile", "radius", "centre"])?;
-            let radius = section.number("radius", LENGTH)?;
-            Ok(Indenter::Parabola { radius, centre: section.number("centre", POSITION)? })
+            let radius = section.number("radius")?;
+            Ok(Indenter::Parabola { radius, centre: section.number("centre")? })
         }
         Profile::Circle => {
-            section.only(&["profile", "radius", "centre"])?;
-            let radius = section.number("radius", LENGTH)?;
-            Ok(Indenter::Circle { radius, centre: section.number("centre", POSITION)? })
+            let radius = section.number("radius")?;
+            Ok(Indenter::Circle { radius, centre: section.number("centre")? })
         }
         Profile::Wedge => {
-            section.only(&["profile", "slope", "centre"])?;
-            let slope = section.number("slope", SLOPE)?;
-            Ok(Indenter::Wedge { slope, centre: section.number("centre", POSITION)? })
+            let slope = section.number("slope")?;
+            Ok(Indenter::Wedge { slope, centre: section.number("centre")? })
         }
-        Profile::Expression => {
-            section.only(&["profile", "formula"])?;
-            const FORMULA: &str = "a formula of x (in space of x and y) on one line, such as \"5e-4*(1-cos(2*pi*x))\"";
-            Ok(Indenter::Expression { formula: text(section, "formula", FORMULA)? })
-        }
+        Profile::Expression => Ok(Indenter::Expression { formula: text(section, "formula")? }),
         Profile::Sampled => sampled(section),
         Profile::Rough => rough(section),
-        Profile::Paraboloid => {
-            section.only(&["profile", "radius", "centre"])?;
-            Ok(Indenter::Paraboloid { radius: both(section, "radius")?, centre: centre(section)? })
-        }
-        Profile::Sphere => {
-            section.only(&["profile", "radius", "centre"])?;
-            Ok(Indenter::Sphere { radius: section.number("radius", LENGTH)?, centre: centre(section)? })
-        }
-        Profile::Cone => {
-            section.only(&["profile", "slope", "centre"])?;
-            Ok(Indenter::Cone { slope: section.number("slope", SLOPE)?, centre: centre(section)? })
-        }
+        Profile::Paraboloid => Ok(Indenter::Paraboloid { radius: both(section, "radius")?, centre: centre(section)? }),
+        Profile::Sphere => Ok(Indenter::Sphere { radius: section.number("radius")?, centre: centre(section)? }),
+        Profile::Cone => Ok(Indenter::Cone { slope: section.number("slope")?, centre: centre(section)? }),
         Profile::Waves => {
-            section.only(&["profile", "amplitude", "wavelength"])?;
             Ok(Indenter::Waves { amplitude: both(section, "amplitude")?, wavelength: both(section, "wavelength")? })
         }
     }
@@ -120,14 +71,14 @@ pub(super) fn read(section: &Section) -> Result<Indenter> {
 
 /// A length for both directions, or one for each.
 fn both(section: &Section, key: &str) -> Result<Vector2<f64>> {
-    let lengths = section.one_or_two(key, LENGTH)?.ok_or_else(|| section.missing(key, LENGTH.what))?;
+    let lengths = section.one_or_two(key)?.ok_or_else(|| section.missing(key, section.what(key)))?;
     Ok(Vector2::new(lengths[0], lengths[lengths.len() - 1]))
 }
 
 /// A place on the face.
 fn centre(section: &Section) -> Result<Vector2<f64>> {
     const WHAT: &str = "an array of two positions in m, along x and along y";
-    match section.one_or_two("centre", POSITION)?.as_deref() {
+    match section.one_or_two("centre")?.as_deref() {
         None => Err(section.missing("centre", WHAT)),
         Some([x, y]) => Ok(Vector2::new(*x, *y)),
         Some(_) => Err(section.error("centre", format!("must be {WHAT}"))),
@@ -135,16 +86,9 @@ fn centre(section: &Section) -> Result<Vector2<f64>> {
 }
 
 fn sampled(section: &Section) -> Result<Indenter> {
-    const FILE: &str = "the name of a file of two columns, x and elevation in m";
-    const EXTENDS: [(&str, Extend); 2] = [("periodic", Extend::Periodic), ("error", Extend::Error)];
-
-    section.only(&[
-        "profile", "file", "columns", "unit", "x_unit", "z_unit", "invert", "detrend", "offset", "seam", "extend",
-        "period",
-    ])?;
-    let file = text(section, "file", FILE)?;
+    let file = text(section, "file")?;
     let extend = section.choice("extend", &EXTENDS, &[])?;
-    let period = section.optional_number("period", LENGTH)?;
+    let period = section.optional_number("period")?;
     let reading = reading(section)?;
     if extend == Extend::Error && (period.is_some() || reading.seam == Seam::Blend) {
         let key = if period.is_some() { "period" } else { "seam" };
@@ -154,9 +98,6 @@ fn sampled(section: &Section) -> Result<Indenter> {
 }
 
 fn reading(section: &Section) -> Result<Reading> {
-    const DETRENDS: [(&str, Detrend); 3] = [("none", Detrend::None), ("mean", Detrend::Mean), ("line", Detrend::Line)];
-    const SEAMS: [(&str, Seam); 2] = [("none", Seam::None), ("blend", Seam::Blend)];
-
     let names = Unit::names(table::Quantity::Length);
     let units: Vec<(&str, &'static str)> = names.iter().map(|name| (*name, *name)).collect();
     let both = section.optional_choice("unit", &units, &[])?;
@@ -170,60 +111,55 @@ fn reading(section: &Section) -> Result<Reading> {
         z_unit: unit("z_unit")?,
         invert: section.optional_flag("invert")?.unwrap_or(false),
         detrend: section.optional_choice("detrend", &DETRENDS, &[])?.unwrap_or(Detrend::None),
-        offset: section.optional_number("offset", POSITION)?.unwrap_or(0.0),
+        offset: section.optional_number("offset")?.unwrap_or(0.0),
         seam: section.optional_choice("seam", &SEAMS, &[])?.unwrap_or(Seam::None),
     })
 }
 
 /// Two columns of a file, by number or title.
 fn columns(section: &Section) -> Result<Option<[Choice; 2]>> {
-    const WHAT: &str = "two columns, x and elevation, by their numbers from 1 or their titles, such as [1, 3]";
     let choice = |value: &toml::Value| match value {
         toml::Value::Integer(number) => number.to_string().parse().ok(),
         toml::Value::String(title) => title.parse().ok(),
         _ => None,
     };
-    let choices: Vec<Option<Choice>> = section.values("columns", WHAT)?.iter().map(choice).collect();
+    let choices: Vec<Option<Choice>> = section.values("columns")?.iter().map(choice).collect();
     match choices.as_slice() {
         [] if !section.has("columns") => Ok(None),
         [Some(x), Some(z)] if x != z => Ok(Some([x.clone(), z.clone()])),
-        _ => Err(section.error("columns", format!("must be {WHAT}"))),
+        _ => Err(section.error("columns", format!("must be {}", section.what("columns")))),
     }
 }
 
 fn rough(section: &Section) -> Result<Indenter> {
-    const HURST: Quantity =
-        Quantity { what: "a Hurst exponent above 0 and at most 1", accepts: |hurst| hurst > 0.0 && hurst <= 1.0 };
-    const SEED: &str = "a whole number, at least 0";
-
-    section.only(&["profile", "hurst", "rms_slope", "rms_height", "shortest", "longest", "period", "seed"])?;
-    let hurst = section.number("hurst", HURST)?;
-    let slope = section.optional_number("rms_slope", SLOPE)?;
-    let height = section.optional_number("rms_height", LENGTH)?;
+    let hurst = section.number("hurst")?;
+    let slope = section.optional_number("rms_slope")?;
+    let height = section.optional_number("rms_height")?;
     let rms = match (slope, height) {
         (Some(_), Some(_)) => return Err(section.error("rms_height", "give rms_slope or rms_height, not both")),
         (Some(slope), None) => Rms::RmsSlope(slope),
         (None, Some(height)) => Rms::RmsHeight(height),
         (None, None) => return Err(section.missing("rms_slope", "it, or rms_height in m")),
     };
-    let shortest = section.number("shortest", LENGTH)?;
-    let longest = section.number("longest", LENGTH)?;
+    let shortest = section.number("shortest")?;
+    let longest = section.number("longest")?;
     if longest < shortest {
         let reason = format!("must be at least the shortest wavelength ({shortest:?} m), got {longest:?}");
         return Err(section.error("longest", reason));
     }
-    let period = section.optional_number("period", LENGTH)?.unwrap_or(longest);
+    let period = section.optional_number("period")?.unwrap_or(longest);
     if period < longest {
         let reason = format!("must be at least the longest wavelength ({longest:?} m), got {period:?}");
         return Err(section.error("period", reason));
     }
-    let seed = section.count("seed", SEED, 0..=usize::MAX)? as u64;
+    let seed = section.count("seed")? as u64;
     Ok(Indenter::Rough { hurst, rms, shortest, longest, period, seed })
 }
 
 /// A text that must be there and not be empty.
-fn text(section: &Section, key: &str, what: &str) -> Result<String> {
-    match section.optional_text(key, what)? {
+fn text(section: &Section, key: &str) -> Result<String> {
+    let what = section.what(key);
+    match section.optional_text(key)? {
         Some(text) if text.trim().is_empty() => Err(section.error(key, format!("is empty; give {what}"))),
         Some(text) => Ok(text),
         None => Err(section.missing(key, what)),

@@ -1,31 +1,10 @@
 //! The `[material]` table: what it says, and what that is in the scene's loading history.
 
-use std::ops::RangeInclusive;
-
 use super::super::{Arm, Material, Memory, PoissonRule, checks};
 use crate::error::{Error, Result};
 use crate::rheology::{Fractional, Loading, Shift};
-use crate::scene::keys::{Quantity, Section};
-
-/// The keys of a material. What fills where is not among them.
-const KEYS: [&str; 16] = [
-    "shear_modulus",
-    "young_modulus",
-    "fractional",
-    "poisson_ratio",
-    "arms",
-    "poisson_rule",
-    "bulk_arms",
-    "memory",
-    "shift",
-    "reference_temperature",
-    "temperature",
-    "c1",
-    "c2",
-    "activation_energy",
-    "notes",
-    "file",
-];
+use crate::scene::keys::Section;
+use crate::scene::keys::tables::{MEMORIES, RULES};
 
 /// A material as it is given.
 struct Given {
@@ -52,10 +31,9 @@ enum Series {
     },
 }
 
-/// Reads the material of a scene with a loading history. `others` are keys that may stand
-/// beside those of a material: where it is, which is not read here.
-pub(in crate::scene) fn read(section: &Section, others: &[&str], loading: Option<&Loading>) -> Result<Material> {
-    let material = given(section, others)?.resolve(section, loading)?;
+/// Reads the material of a scene with a loading history. What it fills is not read here.
+pub(in crate::scene) fn read(section: &Section, loading: Option<&Loading>) -> Result<Material> {
+    let material = given(section)?.resolve(section, loading)?;
     if let (Some(loading), Some(rule)) = (loading, material.poisson_rule)
         && let Some((t, nu)) = material.poisson().leaves(loading.band)
     {
@@ -70,19 +48,12 @@ pub(in crate::scene) fn read(section: &Section, others: &[&str], loading: Option
 
 /// Whether a table is a material, in whatever history.
 pub(in crate::scene) fn check(section: &Section) -> Result<()> {
-    given(section, &[]).map(drop)
+    given(section).map(drop)
 }
 
-fn given(section: &Section, others: &[&str]) -> Result<Given> {
-    const RATIO: Quantity = Quantity {
-        what: "a ratio above -1 and below 0.5 (0.5 is incompressible; come near it with, say, 0.499)",
-        accepts: |ratio| ratio > -1.0 && ratio < 0.5,
-    };
-    const MEMORIES: [(&str, Memory); 2] =
-        [("exponential", Memory::Exponential), ("backward_euler", Memory::BackwardEuler)];
-
-    section.only(&[&KEYS, others].concat())?;
-    let poisson_ratio = section.number("poisson_ratio", RATIO)?;
+fn given(section: &Section) -> Result<Given> {
+    section.only_known()?;
+    let poisson_ratio = section.number("poisson_ratio")?;
     let series = series(section, poisson_ratio)?;
     let relaxes = !matches!(&series, Series::Prony { arms, .. } if arms.is_empty());
     let (poisson_rule, bulk_arms) = bulk(section, relaxes)?;
@@ -98,29 +69,23 @@ fn given(section: &Section, others: &[&str]) -> Result<Given> {
 }
 
 fn series(section: &Section, poisson_ratio: f64) -> Result<Series> {
-    const MODULUS: Quantity = Quantity::positive("a positive modulus in Pa s^order");
-    const ORDER: Quantity = Quantity { what: "an order above 0 and below 1", accepts: |a| a > 0.0 && a < 1.0 };
-    const ARMS: RangeInclusive<usize> = 1..=50;
-
     let Some(fractional) = section.optional_section("fractional")? else {
         return Ok(Series::Prony { modulus: shear_modulus(section, poisson_ratio)?, arms: arms(section, "arms")? });
     };
     if let Some(other) = ["shear_modulus", "young_modulus", "arms"].into_iter().find(|key| section.has(key)) {
         return Err(section.error(other, format!("follows from fractional; give {other} or fractional, not both")));
     }
-    fractional.only(&["modulus", "order", "arms"])?;
-    let (modulus, order) = (fractional.number("modulus", MODULUS)?, fractional.number("order", ORDER)?);
-    let arms = fractional.optional_count("arms", "a whole number of arms from 1 to 50", ARMS)?;
+    fractional.only_known()?;
+    let (modulus, order) = (fractional.number("modulus")?, fractional.number("order")?);
+    let arms = fractional.optional_count("arms")?;
     let law = Fractional::new(modulus, order).map_err(|error| section.error("fractional", error.to_string()))?;
     Ok(Series::Fractional { law, arms })
 }
 
 /// The instantaneous shear modulus, given as itself or as Young's modulus.
 fn shear_modulus(section: &Section, poisson_ratio: f64) -> Result<f64> {
-    const MODULUS: Quantity = Quantity::positive("a positive modulus in Pa");
-
-    let shear = section.optional_number("shear_modulus", MODULUS)?;
-    let young = section.optional_number("young_modulus", MODULUS)?;
+    let shear = section.optional_number("shear_modulus")?;
+    let young = section.optional_number("young_modulus")?;
     match (shear, young) {
         (Some(_), Some(_)) => Err(section.error("young_modulus", "give shear_modulus or young_modulus, not both")),
         (Some(shear), None) => Ok(shear),
@@ -130,21 +95,11 @@ fn shear_modulus(section: &Section, poisson_ratio: f64) -> Result<f64> {
 }
 
 fn arms(section: &Section, key: &str) -> Result<Vec<Arm>> {
-    const WEIGHT: Quantity = Quantity {
-        what: "a share of the instantaneous modulus, above 0 and at most 1",
-        accepts: |weight| weight > 0.0 && weight <= 1.0,
-    };
-    // Rates of smaller ones are no numbers.
-    const TIME: Quantity = Quantity {
-        what: "a positive relaxation time in s, at least 2.3e-308",
-        accepts: |time| time > 0.0 && time.is_normal(),
-    };
-
     let arm = |section: &Section| {
-        section.only(&["weight", "time"])?;
-        Ok(Arm { weight: section.number("weight", WEIGHT)?, time: section.number("time", TIME)? })
+        section.only_known()?;
+        Ok(Arm { weight: section.number("weight")?, time: section.number("time")? })
     };
-    let sections = section.sections(key, "an array of tables { weight = ..., time = ... }")?;
+    let sections = section.sections(key)?;
     let arms: Vec<Arm> = sections.iter().map(arm).collect::<Result<_>>()?;
     checks::weights(&arms).map_err(|reason| section.error(key, reason))?;
     Ok(arms)
@@ -152,11 +107,6 @@ fn arms(section: &Section, key: &str) -> Result<Vec<Arm>> {
 
 /// How the bulk modulus relaxes; `relaxes` says whether the shear modulus does.
 fn bulk(section: &Section, relaxes: bool) -> Result<(Option<PoissonRule>, Vec<Arm>)> {
-    const RULES: [(&str, PoissonRule); 3] = [
-        ("constant_ratio", PoissonRule::ConstantRatio),
-        ("constant_bulk_modulus", PoissonRule::ConstantBulkModulus),
-        ("bulk_arms", PoissonRule::BulkArms),
-    ];
     let rule = section.optional_choice("poisson_rule", &RULES, &[])?;
     if relaxes && rule.is_none() {
         let reason = "missing, and required with arms: give \"constant_ratio\" (the bulk modulus relaxes with the \
@@ -186,14 +136,6 @@ fn shift(section: &Section) -> Result<Option<(Shift, f64, f64)>> {
         Arrhenius,
     }
     const LAWS: [(&str, Law); 2] = [("wlf", Law::Wlf), ("arrhenius", Law::Arrhenius)];
-    // What lies below was meant in degrees Celsius.
-    const TEMPERATURE: Quantity = Quantity {
-        what: "a temperature in K, from 100 to 3000 (20 degrees Celsius are 293.15 K)",
-        accepts: |t| (100.0..=3000.0).contains(&t),
-    };
-    const C1: Quantity = Quantity::positive("a positive number");
-    const C2: Quantity = Quantity::positive("a positive difference of temperatures in K");
-    const ENERGY: Quantity = Quantity::positive("a positive energy in J/mol");
     const OF_THE_LAWS: [&str; 5] = ["reference_temperature", "temperature", "c1", "c2", "activation_energy"];
 
     let Some(law) = section.optional_choice("shift", &LAWS, &[])? else {
@@ -209,13 +151,11 @@ fn shift(section: &Section) -> Result<Option<(Shift, f64, f64)>> {
     if let Some(key) = foreign.iter().find(|key| section.has(key)) {
         return Err(section.error(key, format!("is not a key of shift = \"{name}\"")));
     }
-    let reference = section.number("reference_temperature", TEMPERATURE)?;
-    let temperature = section.number("temperature", TEMPERATURE)?;
+    let reference = section.number("reference_temperature")?;
+    let temperature = section.number("temperature")?;
     let shift = match law {
-        Law::Wlf => Shift::Wlf { reference, c1: section.number("c1", C1)?, c2: section.number("c2", C2)? },
-        Law::Arrhenius => {
-            Shift::Arrhenius { reference, activation_energy: section.number("activation_energy", ENERGY)? }
-        }
+        Law::Wlf => Shift::Wlf { reference, c1: section.number("c1")?, c2: section.number("c2")? },
+        Law::Arrhenius => Shift::Arrhenius { reference, activation_energy: section.number("activation_energy")? },
     };
     let factor = shift.factor(temperature).map_err(|error| section.error("temperature", error.to_string()))?;
     Ok(Some((shift, temperature, factor)))
@@ -226,7 +166,7 @@ fn notes(section: &Section) -> Result<Vec<String>> {
         Some(text) if !text.contains(char::is_control) => Ok(text.to_owned()),
         _ => Err(section.must_be(&format!("notes.{index}"), "a text on one line", value)),
     };
-    section.values("notes", "an array of texts")?.iter().enumerate().map(note).collect()
+    section.values("notes")?.iter().enumerate().map(note).collect()
 }
 
 impl Given {

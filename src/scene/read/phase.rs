@@ -7,7 +7,7 @@ use toml::Value;
 
 use super::Preset;
 use crate::error::Result;
-use crate::scene::keys::{Quantity, Section};
+use crate::scene::keys::Section;
 use crate::scene::{Motion, Phase, Stepping};
 
 /// All phases, in order; at least one. Those that say nothing of their steps have the tolerance of the preset.
@@ -15,7 +15,7 @@ pub(super) fn read_all(root: &Section, preset: Option<Preset>) -> Result<Vec<Pha
     if root.table().get("phase").is_some_and(Value::is_table) {
         return Err(root.error("phase", ONE_TABLE));
     }
-    let sections = root.sections("phase", "an array of tables, [[phase]]")?;
+    let sections = root.sections("phase")?;
     if sections.is_empty() {
         let wrong = if root.has("phase") { "empty" } else { "missing" };
         return Err(root.error("phase", format!("{wrong}; give at least one [[phase]] table")));
@@ -38,7 +38,7 @@ pub(in crate::scene) fn default_name(index: usize) -> String {
 
 /// `taken` are the names of the phases before, with their indices.
 fn name(section: &Section, index: usize, taken: &mut HashMap<String, usize>) -> Result<String> {
-    let name = section.optional_text("name", "a name on one line")?.unwrap_or_else(|| default_name(index));
+    let name = section.optional_text("name")?.unwrap_or_else(|| default_name(index));
     if name.trim().is_empty() {
         return Err(section.error("name", "must be a name that is not empty"));
     }
@@ -49,21 +49,8 @@ fn name(section: &Section, index: usize, taken: &mut HashMap<String, usize>) -> 
 }
 
 fn phase(section: &Section, name: String, preset: Option<Preset>) -> Result<Phase> {
-    const APPROACH: Quantity = Quantity::any("a normal approach in m");
-    const FORCE: Quantity = Quantity { what: "a compressive force in N/m, at least 0", accepts: |force| force >= 0.0 };
-
     section.later(&[("temperature", super::NO_TEMPERATURE)])?;
-    section.only(&[
-        "name",
-        "duration",
-        "steps",
-        "tolerance",
-        "approach",
-        "normal_force",
-        "velocity",
-        "distance",
-        "tangential",
-    ])?;
+    section.only_known()?;
     let motion = motion(section)?;
     if section.has("approach") && section.has("normal_force") {
         return Err(section.error("normal_force", "give approach or normal_force, not both"));
@@ -72,54 +59,44 @@ fn phase(section: &Section, name: String, preset: Option<Preset>) -> Result<Phas
         name,
         duration: duration(section, motion)?,
         stepping: stepping(section, preset)?,
-        approach: section.optional_number("approach", APPROACH)?,
-        normal_force: section.optional_number("normal_force", FORCE)?,
+        approach: section.optional_number("approach")?,
+        normal_force: section.optional_number("normal_force")?,
         motion,
     })
 }
 
 fn stepping(section: &Section, preset: Option<Preset>) -> Result<Stepping> {
-    const STEPS: &str = "a whole number of steps, at least 1";
-
-    let steps = section.optional_count("steps", STEPS, super::COUNT)?;
-    let tolerance = section.optional_number("tolerance", super::TOLERANCE)?;
+    let steps = section.optional_count("steps")?;
+    let tolerance = section.optional_number("tolerance")?;
     match (steps, tolerance) {
         (Some(_), Some(_)) => Err(section.error("tolerance", "give steps or tolerance, not both")),
         (Some(steps), None) => Ok(Stepping::Steps(steps)),
         (None, Some(tolerance)) => Ok(Stepping::Tolerance(tolerance)),
         (None, None) => {
-            let missing = || section.missing("steps", &format!("{STEPS}, or a tolerance"));
+            let missing = || section.missing("steps", &format!("{}, or a tolerance", section.what("steps")));
             preset.map(|preset| Stepping::Tolerance(preset.steps)).ok_or_else(missing)
         }
     }
 }
 
 fn motion(section: &Section) -> Result<Motion> {
-    const VELOCITY: Quantity = Quantity::any("a velocity in m/s");
-    const AMPLITUDE: Quantity = Quantity::any("a length in m");
-    const CYCLES: Quantity = Quantity::positive("a positive number of cycles");
-    const PHASE: Quantity = Quantity::any("an angle in degrees");
-
     let Some(tangential) = section.optional_section("tangential")? else {
-        return Ok(Motion::Velocity(section.along_the_face("velocity", VELOCITY)?.unwrap_or_default()));
+        return Ok(Motion::Velocity(section.along_the_face("velocity")?.unwrap_or_default()));
     };
     if let Some(other) = ["velocity", "distance"].into_iter().find(|key| section.has(key)) {
         return Err(section.error(other, format!("give {other} or tangential, not both")));
     }
-    tangential.only(&["amplitude", "cycles", "phase"])?;
-    let amplitude = tangential.along_the_face("amplitude", AMPLITUDE)?;
-    let amplitude = amplitude.ok_or_else(|| tangential.missing("amplitude", AMPLITUDE.what))?;
-    let phase: Vector2<f64> = tangential.along_the_face("phase", PHASE)?.unwrap_or_default();
-    Ok(Motion::Tangential { amplitude, cycles: tangential.number("cycles", CYCLES)?, phase })
+    tangential.only_known()?;
+    let amplitude = tangential.along_the_face("amplitude")?;
+    let amplitude = amplitude.ok_or_else(|| tangential.missing("amplitude", tangential.what("amplitude")))?;
+    let phase: Vector2<f64> = tangential.along_the_face("phase")?.unwrap_or_default();
+    Ok(Motion::Tangential { amplitude, cycles: tangential.number("cycles")?, phase })
 }
 
 /// The duration, given as itself or as the distance slid at the velocity of the phase.
 fn duration(section: &Section, motion: Motion) -> Result<f64> {
-    const DURATION: Quantity = Quantity::positive("a positive duration in s");
-    const DISTANCE: Quantity = Quantity::positive("a positive distance in m");
-
-    let duration = section.optional_number("duration", DURATION)?;
-    let distance = section.optional_number("distance", DISTANCE)?;
+    let duration = section.optional_number("duration")?;
+    let distance = section.optional_number("distance")?;
     match (duration, distance, motion) {
         (Some(_), Some(_), _) => Err(section.error("distance", "give distance or duration, not both")),
         (Some(duration), None, _) => Ok(duration),
