@@ -16,16 +16,22 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     println!("cargo:rustc-env=MPJR_GIT_COMMIT={}", git_commit());
 
-    let petsc = pkg_config::Config::new()
-        .atleast_version("3.15")
-        .probe("petsc")
-        .map_err(|error| format!("PETSc was not found; ci/packages.txt lists the Debian packages\n{error}"))?;
+    let petsc = pkg_config::Config::new().atleast_version("3.15").probe("petsc").map_err(|error| {
+        format!(
+            "PETSc was not found; ci/packages.txt lists the Debian packages; elsewhere set PKG_CONFIG_PATH to the \
+                 directory of petsc.pc ($PETSC_DIR/$PETSC_ARCH/lib/pkgconfig)\n{error}"
+        )
+    })?;
+    refuse_complex(&petsc.include_paths)?;
     // petsc.pc names neither MPI's headers nor HDF5's.
     let include_only = |name: &str| {
         let library = pkg_config::Config::new().cargo_metadata(false).probe(name);
-        library
-            .map(|library| library.include_paths)
-            .map_err(|error| format!("{name} was not found; ci/packages.txt lists the Debian packages\n{error}"))
+        library.map(|library| library.include_paths).map_err(|error| {
+            format!(
+                "{name} was not found; ci/packages.txt lists the Debian packages; elsewhere set PKG_CONFIG_PATH to \
+                     the directory of {name}.pc\n{error}"
+            )
+        })
     };
     let includes = [petsc.include_paths, include_only("mpi-c")?, include_only("hdf5-openmpi")?].concat();
 
@@ -51,6 +57,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     // Reading the headers needs libclang1-14 and libclang-common-14-dev.
     builder.generate()?.write_to_file(PathBuf::from(std::env::var("OUT_DIR")?).join("petsc.rs"))?;
+    Ok(())
+}
+
+/// Refuses a PETSc whose numbers are complex: its headers say so.
+fn refuse_complex(includes: &[PathBuf]) -> Result<(), String> {
+    for header in includes.iter().map(|path| path.join("petscconf.h")) {
+        let text = std::fs::read_to_string(&header).unwrap_or_default();
+        if text.lines().any(|line| line.trim_end() == "#define PETSC_USE_COMPLEX 1") {
+            return Err(format!(
+                "{} is of a PETSc with complex numbers; mpjr needs one with real numbers (configure PETSc with \
+                 --with-scalar-type=real, or let PKG_CONFIG_PATH lead to such a one)",
+                header.display()
+            ));
+        }
+    }
     Ok(())
 }
 
