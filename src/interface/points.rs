@@ -27,6 +27,7 @@ pub struct Points<const D: usize> {
     starts: Vec<usize>,
     /// The grid that the points make, if they do.
     grid: Option<Grid>,
+    flat: bool,
     /// Of the profile over each point, with the indenter where it was placed last.
     heights: Vec<Height>,
     /// The sliding that `heights` hold for, m.
@@ -67,7 +68,7 @@ impl<const D: usize> Points<D> {
         };
         let all: Vec<_> = face.places.iter().zip(areas).map(point).collect();
         let (shares, starts) = ((0..all.len()).map(|node| (node, 1.0)).collect(), (0..=all.len()).collect());
-        Self { all, shares, starts, grid: face.grid.clone(), heights: Vec::new(), placed: None }
+        Self::of((all, shares, starts), face.grid.clone())
     }
 
     /// Gauss points of each facet.
@@ -88,7 +89,12 @@ impl<const D: usize> Points<D> {
             vec![Axis { places, period: grid.axes[0].period }]
         };
         let grid = face.grid.as_ref().filter(|_| D == 2).map(|grid| Grid { axes: axes(grid) });
-        Self { all, shares, starts, grid, heights: Vec::new(), placed: None }
+        Self::of((all, shares, starts), grid)
+    }
+
+    fn of((all, shares, starts): (Vec<Point<D>>, Vec<(usize, f64)>, Vec<usize>), grid: Option<Grid>) -> Self {
+        let flat = all.iter().all(|point| point.normal[D - 1] == 1.0);
+        Self { all, shares, starts, grid, flat, heights: Vec::new(), placed: None }
     }
 
     /// Evaluates the profile at the points, once per place of the indenter.
@@ -121,6 +127,11 @@ impl<const D: usize> Points<D> {
     /// How many there are.
     pub fn count(&self) -> usize {
         self.all.len()
+    }
+
+    /// Whether all normals are straight up.
+    pub fn are_flat(&self) -> bool {
+        self.flat
     }
 
     /// Whether points are not nodes.

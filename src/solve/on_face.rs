@@ -93,7 +93,7 @@ impl Factor {
         }
         let forces: Vec<(usize, f64)> = self.columns.multiply(|place| x[place]).collect();
         x.copy_from_slice(b);
-        compliance.add_displacements(forces.into_iter().map(|(row, force)| (row, -force)), x)?;
+        compliance.add_displacements(forces.into_iter().map(|(row, force)| (row, -force)), x, 0..D)?;
         x.iter_mut().for_each(|value| *value /= self.secant);
         Ok(())
     }

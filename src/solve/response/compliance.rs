@@ -3,6 +3,7 @@
 //! u = C f for forces f on the face alone: C is the inverse of the Schur complement of the stiffness onto the face.
 
 use std::cell::OnceCell;
+use std::ops::Range;
 
 use nalgebra::{DMatrix, SMatrix};
 
@@ -99,7 +100,7 @@ impl<const D: usize> Compliance<D> {
         for (component, first) in first.iter_mut().enumerate() {
             let mut force = vec![0.0; order];
             force[component] = 1.0;
-            *first = response(&transform, &waves, &force)?;
+            *first = response(&transform, &waves, (&force, 0..D))?;
         }
         Ok(Self::new(order, Form::Periodic { transform, waves, first }))
     }
@@ -142,8 +143,14 @@ impl<const D: usize> Compliance<D> {
         }
     }
 
-    /// u += C f, for forces given as (place, force); a place may come more than once.
-    pub fn add_displacements(&self, forces: impl Iterator<Item = (usize, f64)>, u: &mut [f64]) -> Result<()> {
+    /// u += C f, for forces given as (place, force); a place may come more than once. Of each node no more than the `components`
+    /// is asked for.
+    pub fn add_displacements(
+        &self,
+        forces: impl Iterator<Item = (usize, f64)>,
+        u: &mut [f64],
+        components: Range<usize>,
+    ) -> Result<()> {
         match &self.form {
             Form::Dense { values, .. } => {
                 for (place, force) in forces.filter(|(_, force)| *force != 0.0) {
@@ -156,7 +163,8 @@ impl<const D: usize> Compliance<D> {
                 let mut all = vec![0.0; self.order];
                 forces.for_each(|(place, force)| all[place] += force);
                 if all.iter().any(|force| *force != 0.0) {
-                    u.iter_mut().zip(response(transform, waves, &all)?).for_each(|(u, more)| *u += more);
+                    let moved = response(transform, waves, (&all, components))?;
+                    u.iter_mut().zip(moved).for_each(|(u, more)| *u += more);
                 }
             }
         }
@@ -216,9 +224,9 @@ fn checkerboard(values: &[f64], (order, components): (usize, usize), signs: &[f6
 fn response<const D: usize>(
     transform: &Transform<D>,
     waves: &[SMatrix<f64, D, D>],
-    forces: &[f64],
+    (forces, components): (&[f64], Range<usize>),
 ) -> Result<Vec<f64>> {
     let mut w = transform.forward(forces)?;
     w.iter_mut().zip(waves).for_each(|(w, c): (&mut Wave<D>, _)| *w = c * *w);
-    transform.inverse(w.iter())
+    transform.inverse_of(w.iter(), components)
 }

@@ -1,6 +1,7 @@
 //! The Fourier transform of the nodes of a periodic face.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 use std::sync::Arc;
 
 use nalgebra::SMatrix;
@@ -73,22 +74,28 @@ impl<const D: usize> Transform<D> {
         if l == 0 || 2 * l == self.columns { 1.0 } else { 2.0 }
     }
 
-    /// The waves of the components of each node.
+    /// The waves of the components of each node; a component that is nothing costs nothing.
     pub fn forward(&self, values: &[f64]) -> Result<Vec<Wave<D>>> {
         let mut waves = vec![Wave::zeros(); self.waves()];
-        let (mut row, mut spectrum) = (self.forward.make_input_vec(), self.forward.make_output_vec());
-        let mut all = vec![Complex::default(); self.waves()];
-        for component in 0..D {
-            for line in 0..self.lines {
-                let of_line = &values[D * line * self.columns..][..D * self.columns];
-                row.iter_mut().zip(of_line.iter().skip(component).step_by(D)).for_each(|(row, value)| *row = *value);
-                self.forward.process(&mut row, &mut spectrum).map_err(transform_failed)?;
-                all.iter_mut().skip(line).step_by(self.lines).zip(&spectrum).for_each(|(all, c)| *all = *c);
+        let mut row = self.forward.make_input_vec();
+        let half = self.columns / 2 + 1;
+        let [mut by_line, mut by_wave] = [0; 2].map(|_| vec![Complex::default(); self.waves()]);
+        let mut scratch = self.forward.make_scratch_vec();
+        for component in (0..D).filter(|&component| values.iter().skip(component).step_by(D).any(|value| *value != 0.0))
+        {
+            for (of_line, spectrum) in values.chunks_exact(D * self.columns).zip(by_line.chunks_exact_mut(half)) {
+                row.iter_mut().zip(of_line.chunks_exact(D)).for_each(|(row, node)| *row = node[component]);
+                self.forward.process_with_scratch(&mut row, spectrum, &mut scratch).map_err(transform_failed)?;
             }
-            if self.lines > 1 {
-                self.across[0].process(&mut all);
-            }
-            for (wave, c) in waves.iter_mut().zip(&all) {
+            let all = match self.lines {
+                1 => &by_line,
+                lines => {
+                    transpose::transpose(&by_line, &mut by_wave, half, lines);
+                    self.across[0].process(&mut by_wave);
+                    &by_wave
+                }
+            };
+            for (wave, c) in waves.iter_mut().zip(all) {
                 // v = -i u
                 let part = if component + 1 < D { [c.im, -c.re] } else { [c.re, c.im] };
                 (wave[(component, 0)], wave[(component, 1)]) = (part[0], part[1]);
@@ -99,29 +106,38 @@ impl<const D: usize> Transform<D> {
 
     /// The components of each node.
     pub fn inverse<'a>(&self, waves: impl Iterator<Item = &'a Wave<D>> + Clone) -> Result<Vec<f64>> {
+        self.inverse_of(waves, 0..D)
+    }
+
+    /// Some of the components of each node; the others are left at zero.
+    pub fn inverse_of<'a>(
+        &self,
+        waves: impl Iterator<Item = &'a Wave<D>> + Clone,
+        components: Range<usize>,
+    ) -> Result<Vec<f64>> {
         let mut values = vec![0.0; D * self.nodes()];
-        let (mut row, mut spectrum) = (self.inverse.make_output_vec(), self.inverse.make_input_vec());
-        let mut all = vec![Complex::default(); self.waves()];
-        for component in 0..D {
-            for (c, wave) in all.iter_mut().zip(waves.clone()) {
+        let (mut row, mut scratch) = (self.inverse.make_output_vec(), self.inverse.make_scratch_vec());
+        let half = self.columns / 2 + 1;
+        let [mut by_line, mut by_wave] = [0; 2].map(|_| vec![Complex::default(); self.waves()]);
+        for component in components {
+            let first = if self.lines == 1 { &mut by_line } else { &mut by_wave };
+            for (c, wave) in first.iter_mut().zip(waves.clone()) {
                 let (re, im) = (wave[(component, 0)], wave[(component, 1)]);
                 *c = if component + 1 < D { Complex::new(-im, re) } else { Complex::new(re, im) };
             }
             if self.lines > 1 {
-                self.across[1].process(&mut all);
+                self.across[1].process(&mut by_wave);
+                transpose::transpose(&by_wave, &mut by_line, self.lines, half);
             }
-            for line in 0..self.lines {
-                spectrum.iter_mut().zip(all.iter().skip(line).step_by(self.lines)).for_each(|(c, all)| *c = *all);
+            for (spectrum, of_line) in by_line.chunks_exact_mut(half).zip(values.chunks_exact_mut(D * self.columns)) {
                 // Real but for round-off.
                 spectrum[0].im = 0.0;
                 if self.columns.is_multiple_of(2) {
-                    spectrum[self.columns / 2].im = 0.0;
+                    spectrum[half - 1].im = 0.0;
                 }
-                self.inverse.process(&mut spectrum, &mut row).map_err(transform_failed)?;
-                let of_line = &mut values[D * line * self.columns..][..D * self.columns];
-                for (value, row) in of_line.iter_mut().skip(component).step_by(D).zip(&row) {
-                    *value = row / self.nodes() as f64;
-                }
+                self.inverse.process_with_scratch(spectrum, &mut row, &mut scratch).map_err(transform_failed)?;
+                let nodes = of_line.chunks_exact_mut(D).zip(&row);
+                nodes.for_each(|(node, row)| node[component] = row / self.nodes() as f64);
             }
         }
         Ok(values)

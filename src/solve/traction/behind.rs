@@ -1,5 +1,7 @@
 //! The body behind the points of the contact, and the points in a step.
 
+use std::ops::Range;
+
 use nalgebra::{SMatrix, SVector};
 
 use super::super::accepted::AcceptedFace;
@@ -32,33 +34,45 @@ impl<const D: usize> Behind<'_, D> {
                 forces[D * node..].iter_mut().zip(&force).for_each(|(to, force)| *to += force);
             }
         }
-        forces.iter_mut().enumerate().filter(|(i, _)| self.compliance.is_held(*i)).for_each(|(_, force)| *force = 0.0);
+        if self.compliance.waves().is_none() {
+            let held = forces.iter_mut().enumerate().filter(|(i, _)| self.compliance.is_held(*i));
+            held.for_each(|(_, force)| *force = 0.0);
+        }
         forces
     }
 
-    /// The displacements of the nodes under forces on them, m.
-    pub fn displacements(&self, forces: &[f64]) -> Result<Vec<f64>> {
+    /// The displacements of the nodes under forces on them, of each no more than the `components`, m.
+    fn displacements(&self, forces: &[f64], components: Range<usize>) -> Result<Vec<f64>> {
         let mut u = vec![0.0; forces.len()];
-        self.compliance.add_displacements(forces.iter().copied().enumerate(), &mut u)?;
+        self.compliance.add_displacements(forces.iter().copied().enumerate(), &mut u, components)?;
         u.iter_mut().for_each(|u| *u /= self.secant);
         Ok(u)
+    }
+
+    /// Whether the laws ask for no motion along the face: without friction on a flat one.
+    pub fn is_normal_alone(&self) -> bool {
+        self.interface.friction().is_none() && self.interface.points().are_flat()
     }
 
     /// The displacements of the nodes under tractions, from what they do without, m, and the forces, N/m.
     pub fn displaced(&self, tractions: &[SVector<f64, D>], free: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         let forces = self.forces(tractions);
-        let mut u = self.displacements(&forces)?;
+        let mut u = self.displacements(&forces, 0..D)?;
         u.iter_mut().zip(free).for_each(|(u, free)| *u += free);
         Ok((u, forces))
     }
 
-    /// The motion of the points under tractions, m.
+    /// The motion of the points under tractions, m, as far as the laws ask for it.
     pub fn moves(&self, tractions: &[SVector<f64, D>]) -> Result<Vec<SVector<f64, D>>> {
-        Ok(self.motions(&self.displacements(&self.forces(tractions))?, tractions))
+        let components = if self.is_normal_alone() { D - 1..D } else { 0..D };
+        Ok(self.motions(&self.displacements(&self.forces(tractions), components)?, tractions))
     }
 
     /// What displacements of the nodes are at the points under tractions, with what gives way where one direction is held.
     pub fn motions(&self, u: &[f64], tractions: &[SVector<f64, D>]) -> Vec<SVector<f64, D>> {
+        if self.compliance.waves().is_some() {
+            return self.at_points(u);
+        }
         let given = |(i, (motion, t)): (usize, (SVector<f64, D>, &SVector<f64, D>))| match self.give(i) {
             Some(give) => motion + give.component_mul(t),
             None => motion,

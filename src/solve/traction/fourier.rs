@@ -21,6 +21,9 @@ use crate::error::Result;
 /// reciprocal of a mean, less than all of it.
 const SOFTNESS: f64 = 0.3;
 
+/// Shares of stick below which a point is taken to slide freely.
+const LEAST_SHARE: f64 = 0.1;
+
 /// M^-1.
 pub struct Fourier<const D: usize> {
     transform: Transform<D>,
@@ -43,7 +46,8 @@ impl<const D: usize> Fourier<D> {
         let shares = || slacks().map(|slack| (share(slack), 1.0 - share(slack)));
         let (give, square) =
             shares().fold((0.0, 0.0), |(give, square), (th, slack)| (give + th * slack, square + th * th));
-        let sticks = square > 0.0;
+        // Where all slides there is next to nothing to transform.
+        let sticks = shares().any(|(th, _)| th > LEAST_SHARE);
         let kappa = if sticks { SOFTNESS * give / square } else { 0.0 };
         let inverse = |c: &SMatrix<f64, D, D>| {
             let system = SMatrix::from_fn(|i, j| match (i + 1 == D, j + 1 == D) {
@@ -70,7 +74,7 @@ impl<const D: usize> Fourier<D> {
         }
         let mut waves = self.transform.forward(&loads)?;
         waves.iter_mut().zip(&self.inverses).for_each(|(wave, inverse)| *wave = inverse * *wave);
-        let solved = self.transform.inverse(waves.iter())?;
+        let solved = self.transform.inverse_of(waves.iter(), if self.sticks { 0..D } else { D - 1..D })?;
         let of = |((point, b), y): ((&Linearised<D>, &SVector<f64, D>), &[f64])| {
             if !point.active {
                 return *b;
