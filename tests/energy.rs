@@ -261,3 +261,59 @@ fn switched_off_it_is_not_there() {
         }
     }
 }
+
+/// A unit square of 8 x 4 cells, each cut into two triangles, in Gmsh's format 2.2: the upper side is "contact", the lower "base".
+fn triangles() -> String {
+    let (nx, nz) = (8, 4);
+    let node = |i: usize, j: usize| j * (nx + 1) + i + 1;
+    let nodes: Vec<String> = (0..=nz)
+        .flat_map(|j| (0..=nx).map(move |i| (i, j)))
+        .map(|(i, j)| format!("{} {} {} 0", node(i, j), i as f64 / nx as f64, j as f64 / nz as f64 - 1.0))
+        .collect();
+    let lines = (0..nx).flat_map(|i| [(1, node(i, nz), node(i + 1, nz)), (2, node(i, 0), node(i + 1, 0))]);
+    let lines = lines.map(|(tag, a, b)| format!("1 2 {tag} {tag} {a} {b}"));
+    let halves = (0..nz).flat_map(|j| (0..nx).map(move |i| (i, j))).flat_map(|(i, j)| {
+        let [a, b, c, d] = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
+        [format!("2 2 3 3 {a} {b} {c}"), format!("2 2 3 3 {a} {c} {d}")]
+    });
+    let cells: Vec<String> = lines.chain(halves).enumerate().map(|(i, cell)| format!("{} {cell}", i + 1)).collect();
+    format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"contact\"\n1 2 \"base\"\n2 3 \"body\"\n$EndPhysicalNames\n\
+         $Nodes\n{}\n{}\n$EndNodes\n$Elements\n{}\n{}\n$EndElements\n",
+        nodes.len(),
+        nodes.join("\n"),
+        cells.len(),
+        cells.join("\n")
+    )
+}
+
+/// What friction takes never falls, not even in a step in which the shear turns round: triangles under a circle at their corner, with
+/// steep tanh, by either quadrature and strategy. (A trapezium rule across the turn gave back up to 27 % of the work here.)
+#[test]
+fn friction_gives_nothing_back_where_shear_turns() {
+    const SCENE: &str = "
+        mesh = { file = \"triangles.msh\", contact = \"contact\", fixed = [\"base\"] }
+        indenter = { profile = \"circle\", radius = 13.46, centre = 1.0 }
+        contact = { penalty = 1.3e4, quadrature = \"gauss\" }
+        friction = { law = \"coulomb_tanh\", coefficient = 0.3, regularisation = 1.2e-10 }
+        solver = { tolerance = 1e-10 }
+        material = { young_modulus = 1140.0, poisson_ratio = 0.0, arms = [{ weight = 0.5, time = 2.5 }], poisson_rule = \"bulk_arms\", \
+            bulk_arms = [{ weight = 0.3, time = 8.2 }], memory = \"backward_euler\" }
+        phase = [{ approach = 5.4e-5, duration = 8.9, steps = 6 }, { velocity = 1.65e-7, distance = 4.8e-4, steps = 4 }, \
+            { velocity = -1.65e-7, distance = 4.8e-4, steps = 5 }]";
+    for strategy in ["condensed", "monolithic"] {
+        for quadrature in ["gauss", "nodal"] {
+            let run = Run::new(SCENE);
+            std::fs::write(run.directory().join("triangles.msh"), triangles()).unwrap();
+            let run = run.set(format!("solver.strategy={strategy}")).set(format!("contact.quadrature={quadrature}"));
+            let outcome = run.done();
+            let [taken, q] = ["energy/friction_dissipation", "tangential_force"].map(|column| outcome.history(column));
+            assert!(
+                q.windows(2).any(|pair| pair[0] * pair[1] < 0.0),
+                "{strategy}, {quadrature}: Q does not turn: {q:?}"
+            );
+            assert!(taken.windows(2).all(|pair| pair[1] >= pair[0]), "{strategy}, {quadrature}: {taken:?}");
+            assert!(taken.last() > Some(&0.0));
+        }
+    }
+}

@@ -19,6 +19,7 @@ mod sample;
 
 use std::fmt::Write;
 use std::path::Path;
+use std::time::Instant;
 
 use mpi::topology::SimpleCommunicator;
 use mpi_cases::Case;
@@ -48,22 +49,22 @@ fn solve(world: &SimpleCommunicator, text: &str) -> Result<Solution> {
 }
 
 /// Of a random sample at least 98 % converge, all of those keep the laws, and the others say so with a remedy. With a penalty and
-/// nothing else said; found: 99.6 % of 500.
+/// nothing else said; found: 99.6 % of 500 (not 126 and 305).
 fn random_scenes(world: &SimpleCommunicator, _: &Path) {
     random(world, &std::env::var("MPJR_EXTREMES_CHOICE").unwrap_or_default(), 120);
 }
 
-/// The same without penetration and with Coulomb's law itself; found: 99.2 % of 500.
+/// The same without penetration and with Coulomb's law itself; found: 99.8 % of 500 (not 305).
 fn random_exact_scenes(world: &SimpleCommunicator, _: &Path) {
     random(world, "exact", 120);
 }
 
-/// The same with Gauss points; found: 99.4 % of 500.
+/// The same with Gauss points; found: 99.8 % of 500 (not 126).
 fn random_gauss_scenes(world: &SimpleCommunicator, _: &Path) {
     random(world, "gauss", 120);
 }
 
-/// The same by the monolithic strategy; found: 98.4 % of 500.
+/// The same by the monolithic strategy; found: 99.8 % of 500 (not 305).
 fn random_monolithic_scenes(world: &SimpleCommunicator, _: &Path) {
     random(world, "monolithic", 70);
 }
@@ -74,12 +75,18 @@ fn random(world: &SimpleCommunicator, choice: &str, count: usize) {
     let scenes = variable("MPJR_EXTREMES_SCENES");
     let mut draw = Draw(1);
     let mut converged = 0;
+    let mut slowest = (0.0, 0);
     let mut table = String::from(Sample::COLUMNS);
     for i in 0..count {
         let sample = Sample::random(&mut draw, Choice::of(choice));
         let scene = sample.scene(1.0, 1.0, 1.0);
+        let begun = Instant::now();
         let outcome = solve(world, &scene);
-        writeln!(table, "{},{}", sample.row(), u8::from(outcome.is_ok())).unwrap();
+        let seconds = begun.elapsed().as_secs_f64();
+        writeln!(table, "{},{},{seconds:.3}", sample.row(), u8::from(outcome.is_ok())).unwrap();
+        if seconds > slowest.0 {
+            slowest = (seconds, i);
+        }
         match outcome {
             Ok(solution) => {
                 converged += 1;
@@ -96,7 +103,7 @@ fn random(world: &SimpleCommunicator, choice: &str, count: usize) {
             Err(other) => panic!("{i}: {other}\n{sample:?}"),
         }
     }
-    println!("{converged} of {count} converge");
+    println!("{converged} of {count} converge; the slowest, scene {}, takes {:.1} s", slowest.1, slowest.0);
     if let Some(file) = variable("MPJR_EXTREMES_OUT") {
         std::fs::write(file, table).unwrap();
     }
@@ -146,51 +153,74 @@ fn makes_no_energy(solution: &Solution) -> std::result::Result<(), String> {
     Ok(())
 }
 
-/// A scene of ordinary proportions in nanometres and gigapascals, in kilometres and millipascals, in microseconds and
-/// years: all forces are those in metres, pascals and seconds times the units, to 1e-9 of the largest.
+/// Scenes of ordinary proportions in other units. Powers of two change no digit of any force, whatever the sides, the strata and the
+/// strategy: of lengths even ones, of which roots are powers of two, too. In nanometres and gigapascals, in kilometres and
+/// millipascals, in microseconds and years all forces are those in metres, pascals and seconds times the units, to 1e-9 of the
+/// largest.
 fn units_do_not_matter(world: &SimpleCommunicator, _: &Path) {
-    let sample = Sample {
-        velocity: 0.1,
-        step: 0.1,
-        penalty: 100.0,
-        regularisation: 0.01,
-        poisson: 0.3,
-        friction: 0.3,
-        depth: 0.7,
-        amplitude: 1e-3,
-        approach: 1.5,
-        cells: [16, 8],
-        arms: 2,
-        rule: "constant_bulk_modulus",
-        memory: "exponential",
-        sides: "periodic",
-        profile: "harmonic",
-        motion: "turn",
-        choice: Choice::DEFAULT,
-    };
+    for (strategy, sides, strata) in [
+        ("condensed", "periodic", false),
+        ("condensed", "free", false),
+        ("condensed", "periodic", true),
+        ("condensed", "free", true),
+        ("monolithic", "periodic", false),
+        ("monolithic", "free", true),
+    ] {
+        let sample = Sample {
+            velocity: 0.1,
+            step: 0.1,
+            penalty: 100.0,
+            regularisation: 0.01,
+            poisson: 0.3,
+            friction: 0.3,
+            depth: 0.7,
+            amplitude: 1e-3,
+            approach: 1.5,
+            cells: [16, 8],
+            arms: 2,
+            rule: "constant_bulk_modulus",
+            memory: "exponential",
+            sides,
+            profile: "harmonic",
+            motion: "turn",
+            choice: Choice { strategy, ..Choice::DEFAULT },
+        };
+        keeps_its_digits(world, &sample, strata, &format!("{strategy}, {sides}, strata: {strata}"));
+    }
+}
+
+fn keeps_its_digits(world: &SimpleCommunicator, sample: &Sample, strata: bool, name: &str) {
     let forces = |length: f64, modulus: f64, time: f64| {
-        let text = sample.scene(length, modulus, time).replace("[solver]", "[solver]\ntolerance = 1e-12");
+        let mut text = sample.scene(length, modulus, time).replace("[solver]", "[solver]\ntolerance = 1e-12");
+        if strata {
+            // Half of the depth, and a stiffer elastic stratum below.
+            let under = format!(
+                "thickness = {:e}\n[[material]]\nyoung_modulus = {:e}\npoisson_ratio = 0.4\n[indenter]",
+                0.35 * length,
+                8.0 * modulus
+            );
+            text = text.replace("[material]", "[[material]]").replace("[indenter]", &under);
+        }
         let unit = length * modulus;
         let solution = solve(world, &text).unwrap();
         let of = |row: &mpjr::output::HistoryRow| [row.normal_force, row.tangential_force].map(|force| force / unit);
         solution.history.iter().flat_map(of).collect::<Vec<f64>>()
     };
     let plain = forces(1.0, 1.0, 1.0);
-    // Powers of two change no digit at all: of lengths even ones, of which roots are powers of two, too.
     for (length, modulus, time) in
         [(0.0f64, -30, 0), (0.0, 61, 0), (0.0, 0, -24), (0.0, 0, 17), (-20.0, 0, 0), (16.0, -44, 9)]
     {
         let scaled = forces(length.exp2(), f64::from(modulus).exp2(), f64::from(time).exp2());
         let same = scaled.iter().zip(&plain).all(|(a, b)| a.to_bits() == b.to_bits());
-        assert!(same, "2^{length} m, 2^{modulus} Pa, 2^{time} s");
+        assert!(same, "{name}: 2^{length} m, 2^{modulus} Pa, 2^{time} s");
     }
     let largest = plain.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
     for (length, modulus, time) in [(1e-9, 1e9, 1.0), (1e3, 1e-3, 1.0), (1e-6, 1e6, 1e-6), (1.0, 1.0, 3e7)] {
         let scaled = forces(length, modulus, time);
         assert_eq!(scaled.len(), plain.len());
         let apart = scaled.iter().zip(&plain).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs())) / largest;
-        println!("{length:e} m, {modulus:e} Pa, {time:e} s: {apart:e}");
-        assert!(apart < 1e-9, "{length:e} m, {modulus:e} Pa, {time:e} s: {apart:e}");
+        println!("{name}: {length:e} m, {modulus:e} Pa, {time:e} s: {apart:e}");
+        assert!(apart < 1e-9, "{name}: {length:e} m, {modulus:e} Pa, {time:e} s: {apart:e}");
     }
 }
 

@@ -97,10 +97,10 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// The head of a table of samples and whether they converged.
-    pub const COLUMNS: &str = "velocity,step,penalty,regularisation,poisson,friction,depth,amplitude,approach,sides,profile,motion,converged\n";
+    /// The head of a table of samples, whether they converged and how long it took.
+    pub const COLUMNS: &str = "velocity,step,penalty,regularisation,poisson,friction,depth,amplitude,approach,sides,profile,motion,converged,seconds\n";
 
-    /// The row of such a table, but for the last column.
+    /// The row of such a table, but for the last two columns.
     pub fn row(&self) -> String {
         let Self { velocity, step, penalty, regularisation, poisson, friction, .. } = self;
         let Self { depth, amplitude, approach, sides, profile, motion, .. } = self;

@@ -3,25 +3,32 @@
 //! Two Gauss points to an edge are twice as many as its nodes, so that there are tractions which together do nothing; a penalty
 //! alone decides between them, and the stiffer it is, the less. Newton's method from where the contact was then finds no way
 //! to which of the points carry; nor does it, now and then, to which of the nodes slip which way. It does from softer laws, whose answer is never far from that of laws a little stiffer: so they are
-//! met one after the other (continuation; Allgower and Georg, Numerical Continuation Methods, 1990).
+//! met one after the other (continuation; Allgower and Georg, Numerical Continuation Methods, 1990). Before and after that, all
+//! points meet the laws one by one for a while ([`super::sweep`]), which takes Newton's method out of a circle among a few states.
 
 use nalgebra::SVector;
 
 use super::fold::branches;
 use super::search::{Operator, Outcome, settle};
+use super::sweep::sweep;
 use super::{Laws, Site};
 use crate::error::Result;
 use crate::friction::{Circumstances, ElasticSlip, Lasting, Law, Share, Strength};
 
 /// Iterations from where the contact was, before laws are softened, and of each softer law.
 const DIRECT: usize = 20;
-const EACH: usize = 25;
+const EACH: usize = 12;
 /// The softest penalty and friction's sharpness, beside the body's own; and how much stiffer the next are.
 const SOFTEST: f64 = 1e-1;
 const STIFFER: f64 = 10.0;
 const MOST_STAGES: i32 = 20;
 /// Beyond this nothing is left to be softened of laws that are exact.
 const NEARLY_EXACT: f64 = 1e9;
+
+/// How often it begins anew, the second time from softer laws, else from where points met the laws one by one; and how many sweeps
+/// over them that takes.
+const ROUNDS: usize = 4;
+const SWEEPS: usize = 50;
 
 /// Tractions near where the laws hold, from others.
 pub fn start<const D: usize>(
@@ -35,12 +42,37 @@ pub fn start<const D: usize>(
         return Ok(found);
     }
     let direct = settle(sites, from.clone(), laws, operator, DIRECT)?;
-    if direct.norm(sites) <= tolerance * direct.size(sites).max(from.size(sites)) {
+    let largest = from.size(sites);
+    let holds = |at: &Outcome<D>| at.norm(sites) <= (tolerance * at.size(sites).max(largest)).max(at.noise(sites));
+    if holds(&direct) {
         return Ok(direct);
     }
+    let mut best = direct;
+    let mut at = best.clone();
+    for round in 0..ROUNDS {
+        at = match round {
+            1 => from_softer_laws(sites, from.clone(), laws, operator)?,
+            _ => settle(sites, sweep(sites, at, laws, operator.0, SWEEPS), laws, operator, EACH)?,
+        };
+        if at.norm(sites) < best.norm(sites) {
+            best = at.clone();
+        }
+        if holds(&best) {
+            break;
+        }
+    }
+    Ok(best)
+}
+
+/// Through softer laws, met one after the other.
+fn from_softer_laws<const D: usize>(
+    sites: &[Site<D>],
+    mut at: Outcome<D>,
+    laws: Laws<'_>,
+    operator: Operator<'_, D>,
+) -> Result<Outcome<D>> {
     let rho = sites.iter().fold(0.0, |most: f64, site| most.max(site.moduli.normal));
     let slip = sites.iter().map(|site| site.relative(&SVector::zeros()).slip.norm()).fold(0.0, f64::max);
-    let mut at = from;
     for stage in 0..MOST_STAGES {
         let stiffness = SOFTEST * STIFFER.powi(stage);
         let soft = stiffness * rho;
@@ -54,8 +86,7 @@ pub fn start<const D: usize>(
             break;
         }
     }
-    let at = settle(sites, at.under(sites, laws), laws, operator, EACH)?;
-    Ok(if at.norm(sites) <= direct.norm(sites) { at } else { direct })
+    settle(sites, at.under(sites, laws), laws, operator, EACH)
 }
 
 /// The law with a shear that turns over a slip no shorter than `slip`, m, over a stiffness.

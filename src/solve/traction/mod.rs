@@ -22,6 +22,7 @@ mod fourier;
 mod held;
 mod linear;
 mod search;
+mod sweep;
 
 use nalgebra::SVector;
 
