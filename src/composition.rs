@@ -4,6 +4,7 @@ mod body;
 mod estimate;
 mod inputs;
 mod profile;
+mod steady;
 mod surface;
 
 use std::any::Any;
@@ -38,6 +39,7 @@ use body::Materials;
 pub use body::{Meshed, Outline, Stretch, outline};
 pub use estimate::Estimate;
 pub use inputs::inputs;
+pub use steady::{last_velocity, steady};
 pub use profile::{Finest, PressedEnd, Shape, elevations, measured, numbers, reach, seam_doubt, shape};
 
 /// A scene made ready to run.

@@ -9,6 +9,7 @@
 //! | [`study`], [`verify`], [`plot`], [`solution`], [`warnings`] | what is advised, compared, drawn; a scene solved in memory; what is doubtful |
 //! | [`composition`] | the root: a scene becomes mesh, profile, laws, body and strategy |
 //! | [`scene`] | keys and checks: plain typed data |
+//! | [`steady`] | steady sliding, without steps |
 //! | [`solve`] | the driver; the face solved for its tractions ([`solve::traction`]), what stands behind it, the monolithic strategy |
 //! | [`output`] | history, fields, XDMF, checkpoints |
 //! | [`interface`], [`bulk`] | points of the contact with their laws and states; forces of a body with memory |
@@ -46,6 +47,7 @@ pub mod scene;
 pub mod snapshot;
 pub mod solution;
 pub mod solve;
+pub mod steady;
 pub mod study;
 pub mod table;
 pub mod verify;

@@ -17,6 +17,7 @@ mod progress;
 mod record;
 mod run;
 mod schema;
+mod steady;
 mod study;
 mod summary;
 mod sweep;
@@ -60,6 +61,8 @@ enum Command {
     Study(study::StudyArguments),
     /// Solve scenes with a known answer and compare; the exit code is 1 if any differs by more than its tolerance
     Verify(verify::VerifyArguments),
+    /// Steady sliding of a periodic layer at each of many velocities, without steps: the friction curve
+    Steady(steady::SteadyArguments),
     /// Draw figures from results
     Plot(plot::PlotArguments),
     /// Compare two result files, dataset by dataset
@@ -101,6 +104,7 @@ pub fn main() -> i32 {
         Command::Man(arguments) => on_first_process(|| manual::man(&arguments)),
         Command::Fit(arguments) => on_first_process(|| fit::run(&arguments)),
         Command::Study(arguments) => study::run(&arguments),
+        Command::Steady(arguments) => steady::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
     };
     match outcome.and_then(|()| terminal::finish()) {

@@ -117,7 +117,7 @@ fn solve(
 }
 
 /// The scene's stem + `.h5` in the current directory.
-fn default_output(scene: &Path) -> PathBuf {
+pub(super) fn default_output(scene: &Path) -> PathBuf {
     let mut name = scene.file_stem().unwrap_or_default().to_owned();
     name.push(".h5");
     PathBuf::from(name)

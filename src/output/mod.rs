@@ -39,6 +39,7 @@ mod recorder;
 mod resume;
 mod scales;
 mod skeleton;
+pub mod steady;
 mod store;
 mod xdmf;
 

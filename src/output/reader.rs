@@ -164,6 +164,11 @@ impl Results {
         self.table("bulk", name)
     }
 
+    /// A dataset of steady sliding: `velocity`, `pressure`, ... as many rows as there are velocities; and `relaxation_time`.
+    pub fn steady(&self, name: &str) -> Result<Field> {
+        self.field(&format!("steady/{name}"))
+    }
+
     fn table(&self, group: &str, name: &str) -> Result<Field> {
         let mut field = self.field(&format!("{group}/{name}"))?;
         let fields = columns::interface(2).chain(columns::interface(3)).map(|field| field.name);

@@ -48,7 +48,7 @@ fn about((units, long_name): (&'static str, &'static str), in_space: bool) -> (&
 }
 
 /// A file in the making.
-struct Skeleton<'a> {
+pub(super) struct Skeleton<'a> {
     file: &'a hdf5::File,
     purpose: Purpose,
     made: Vec<Described>,
@@ -56,7 +56,8 @@ struct Skeleton<'a> {
 
 /// Creates the file at `path`, which must not exist, with all extents at the planned number of rows and no row in it.
 pub(super) fn create(path: &Path, metadata: &Metadata, plan: &Plan) -> Result<()> {
-    write(path, &|file| root_attributes(file, metadata), plan, Purpose::Growing)
+    // A killed run is one that was stopped. The end of a run points `status` at another of `status_values`.
+    write(path, &|file| root_attributes(file, metadata, (Status::Stopped, 0.0)), plan, Purpose::Growing)
         .map_err(|error| Error::file(path, format!("cannot be created: {}", super::plain(&error))))
 }
 
@@ -75,18 +76,13 @@ pub(super) fn write(
     root(&file)?;
 
     // Datasets first and attributes after them, so that the headers lie close together.
-    let mut skeleton = Skeleton { file: &file, purpose, made: Vec::new() };
+    let mut skeleton = Skeleton::new(&file, purpose);
     skeleton.history(plan)?;
     skeleton.interface(plan)?;
     if let Some(bulk) = &plan.bulk {
         skeleton.bulk(bulk)?;
     }
-    let made = skeleton.made;
-    for Described { set, units, long_name, .. } in &made {
-        text(set, "units", units)?;
-        text(set, "long_name", long_name)?;
-    }
-    super::scales::attach(&file, made.iter().map(|made| (&made.set, made.scales.as_slice())))?;
+    skeleton.finish()?;
     let phase = file.dataset("history/phase")?;
     texts(&phase, "names", &plan.phase_names)?;
     if let Some(bulk) = &plan.bulk {
@@ -95,11 +91,15 @@ pub(super) fn write(
             texts(&set, "components", field.components.names(bulk.axes))?;
         }
     }
-    drop(made);
     file.close()
 }
 
-fn root_attributes(file: &hdf5::File, metadata: &Metadata) -> hdf5::Result<()> {
+/// The attributes of the root, for a run of this status that has taken so many seconds.
+pub(super) fn root_attributes(
+    file: &hdf5::File,
+    metadata: &Metadata,
+    (status, seconds): (Status, f64),
+) -> hdf5::Result<()> {
     text(file, "title", &metadata.title)?;
     text(file, "scene", &metadata.scene)?;
     text(file, "inputs", &metadata.inputs)?;
@@ -109,14 +109,27 @@ fn root_attributes(file: &hdf5::File, metadata: &Metadata) -> hdf5::Result<()> {
     text(file, "started", &super::clock::iso_utc(metadata.started))?;
     text(file, "units", "SI")?;
     attribute::<i64>(file, "mpi_ranks")?.write_scalar(&(metadata.ranks as i64))?;
-    attribute::<f64>(file, "wall_seconds")?.write_scalar(&0.0)?;
+    attribute::<f64>(file, "wall_seconds")?.write_scalar(&seconds)?;
     texts(file, "warnings", &metadata.warnings)?;
-    // A killed run is one that was stopped. The end of a run points `status` at another of `status_values`.
-    text(file, "status", Status::Stopped.as_str())?;
+    text(file, "status", status.as_str())?;
     texts(file, "status_values", &Status::ALL.map(Status::as_str))
 }
 
-impl Skeleton<'_> {
+impl<'a> Skeleton<'a> {
+    /// In a file without datasets.
+    pub(super) fn new(file: &'a hdf5::File, purpose: Purpose) -> Self {
+        Self { file, purpose, made: Vec::new() }
+    }
+
+    /// Says of each dataset what it is, and which others are its scales.
+    pub(super) fn finish(self) -> hdf5::Result<()> {
+        for Described { set, units, long_name, .. } in &self.made {
+            text(set, "units", units)?;
+            text(set, "long_name", long_name)?;
+        }
+        super::scales::attach(self.file, self.made.iter().map(|made| (&made.set, made.scales.as_slice())))
+    }
+
     fn history(&mut self, plan: &Plan) -> hdf5::Result<()> {
         self.file.create_group("history")?;
         if plan.extra.energy {
@@ -228,7 +241,7 @@ impl Skeleton<'_> {
     }
 
     /// A dataset that is written whole, with the scale and the length of each dimension.
-    fn fixed<T: H5Type>(
+    pub(super) fn fixed<T: H5Type>(
         &mut self,
         (group, name): (&str, &str),
         values: &[T],

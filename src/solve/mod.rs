@@ -24,8 +24,8 @@ pub use condensed::{Condensed, Freedom, LARGE_FACE, LARGE_PERIODIC_FACE};
 pub use driver::{Counts, Driver, MAX_NEWTON, Position};
 pub use monolithic::Monolithic;
 pub use response::{
-    Compliance, Following, Inside, Interior, Layered, PeriodicColumn, Relaxation, Relaxations, Remembering, Response,
-    Sparse,
+    Compliance, Following, Inside, Interior, Layered, Moving, PeriodicColumn, Relaxation, Relaxations, Remembering,
+    Response, Sparse, Travelling,
 };
 
 /// What helps most steps that do not converge.

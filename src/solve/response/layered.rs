@@ -2,6 +2,7 @@
 //! method and one back after it are a step's only solve.
 
 use mpi::topology::SimpleCommunicator;
+use nalgebra::SMatrix;
 
 use super::super::body::{Body, Region, Solid};
 use super::super::{BulkFields, Work};
@@ -43,15 +44,27 @@ impl<const D: usize> PeriodicColumn<D> {
         self.cells.iter().map(with).collect()
     }
 
-    fn transform(&self) -> Transform<D> {
+    /// The stiffness of each of `count` parts of the bulk by itself.
+    pub fn parts(&self, count: usize, transform: &Transform<D>) -> Vec<Operator<D>> {
+        let alone = |part: usize| (0..count).map(|other| f64::from(u8::from(other == part))).collect::<Vec<f64>>();
+        (0..count).map(|part| Operator::new(&self.stiffness(&alone(part)), transform)).collect()
+    }
+
+    /// The transform of its face.
+    pub fn transform(&self) -> Transform<D> {
         Transform::new(&self.counts)
     }
 
     /// The compliance of the face at the instantaneous moduli, of a bulk of one part.
     pub fn compliance(&self) -> Result<Compliance<D>> {
         let transform = self.transform();
-        let waves = face_compliance(&self.stiffness(&[1.0]), &transform)?;
+        let waves = self.waves(&transform)?;
         Compliance::of_periodic_layer(transform, waves)
+    }
+
+    /// That of each wave vector.
+    pub fn waves(&self, transform: &Transform<D>) -> Result<Vec<SMatrix<f64, D, D>>> {
+        face_compliance(&self.stiffness(&[1.0]), transform)
     }
 }
 
@@ -144,9 +157,8 @@ impl<const D: usize> Layered<D> {
     /// At rest.
     pub fn new(solid: Solid<D>, column: &PeriodicColumn<D>, relaxations: Relaxations) -> Self {
         let count = relaxations.series.len();
-        let alone = |part: usize| (0..count).map(|other| f64::from(u8::from(other == part))).collect::<Vec<f64>>();
         let transform = column.transform();
-        let parts = (0..count).map(|part| Operator::new(&column.stiffness(&alone(part)), &transform)).collect();
+        let parts = column.parts(count, &transform);
         let rows = column.cells.len();
         let field = || vec![Wave::zeros(); transform.waves() * rows];
         Self {

@@ -10,6 +10,7 @@ mod layered;
 mod remembering;
 mod sparse;
 mod transform;
+mod travelling;
 mod waves;
 
 use super::{BulkFields, Work};
@@ -25,6 +26,7 @@ pub use layered::{Layered, PeriodicColumn, Relaxations};
 pub use remembering::{Inside, Remembering};
 pub use sparse::Sparse;
 pub use transform::Transform;
+pub use travelling::{Moving, Travelling};
 
 /// What stands behind the face. All ranks call each method together; the compliance is on rank 0.
 pub trait Response<const D: usize> {

@@ -16,11 +16,15 @@
 //! w_0 = P_0 s_0,     w_{j+1} = P_{j+1} (s_{j+1} - G_j' w_j)
 //! ```
 
-use nalgebra::{Complex, SMatrix};
+mod vibration;
+
+use nalgebra::{Complex, ComplexField, SMatrix};
 
 use super::transform::{Transform, Wave};
 use crate::element::solid::Blocks;
 use crate::error::{Error, Result};
+
+pub use vibration::Vibration;
 
 /// The stiffness of a layer, or a part of it.
 pub struct Operator<const D: usize> {
@@ -31,9 +35,9 @@ pub struct Operator<const D: usize> {
 
 /// D_j and G_j.
 #[derive(Clone, Copy)]
-struct Row<const D: usize> {
-    diagonal: SMatrix<f64, D, D>,
-    coupling: SMatrix<f64, D, D>,
+struct Row<const D: usize, T = f64> {
+    diagonal: SMatrix<T, D, D>,
+    coupling: SMatrix<T, D, D>,
 }
 
 impl<const D: usize> Operator<D> {
@@ -80,9 +84,9 @@ pub struct Elimination<const D: usize> {
 
 /// P_j and G_j.
 #[derive(Clone, Copy)]
-struct Pivot<const D: usize> {
-    inverse: SMatrix<f64, D, D>,
-    coupling: SMatrix<f64, D, D>,
+struct Pivot<const D: usize, T = f64> {
+    inverse: SMatrix<T, D, D>,
+    coupling: SMatrix<T, D, D>,
 }
 
 impl<const D: usize> Elimination<D> {
@@ -158,7 +162,10 @@ pub fn face_compliance<const D: usize>(
 }
 
 /// P_j from P_{j+1}.
-fn pivot<const D: usize>(row: &Row<D>, below: &SMatrix<f64, D, D>) -> Result<SMatrix<f64, D, D>> {
+fn pivot<const D: usize, T: ComplexField + Copy>(
+    row: &Row<D, T>,
+    below: &SMatrix<T, D, D>,
+) -> Result<SMatrix<T, D, D>> {
     (row.diagonal - row.coupling * below * row.coupling.transpose())
         .try_inverse()
         .ok_or_else(|| Error::Solver("the stiffness of the layer is singular".into()))

@@ -1,0 +1,93 @@
+//! A scene as one of steady sliding: its layer, its indenter, and what its last phase holds.
+
+use std::path::Path;
+
+use mpi::topology::SimpleCommunicator;
+
+use super::body::{self, Materials, Meshed};
+use super::{Parts, course, friction, prepare, quadrature};
+use crate::error::{Error, Result};
+use crate::interface::{Interface, Laws};
+use crate::scene::{Motion, Phase, Quadrature, Scene};
+use crate::solve::{Relaxations, Solid, Travelling};
+use crate::steady::Sliding;
+use crate::steady::contact::Held;
+
+/// The velocity of the indenter in the last phase of the scene in `file`, m/s.
+///
+/// # Errors
+/// [`Error::Scene`] where it has none.
+pub fn last_velocity(scene: &Scene, file: &Path) -> Result<f64> {
+    match last(scene)?.motion {
+        Motion::Velocity(velocity) if velocity.x != 0.0 => Ok(velocity.x),
+        _ => {
+            let reason = "the last phase has none to slide at steadily; give it one, or --velocities";
+            Err(Error::scene(file, format!("phase.{}.velocity", last(scene)?.name), reason))
+        }
+    }
+}
+
+fn last(scene: &Scene) -> Result<&Phase> {
+    scene.phases.last().ok_or_else(|| Error::Internal("a scene without phases".into()))
+}
+
+/// The steady sliding of the scene in `file`, under what its last phase holds, on every rank of `comm`. Collective.
+///
+/// # Errors
+/// [`Error::Scene`] where there is none: the face does not repeat, the friction remembers, the layer relaxes to nothing.
+pub fn steady(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Sliding> {
+    let refused = |key: &str, reason: &str| Error::scene(file, key, format!("mpjr steady {reason}"));
+    if scene.layer().is_none() {
+        return Err(refused("mesh", "takes a [layer] with periodic sides; steady sliding never ends on a mesh"));
+    }
+    if scene.is_in_space() {
+        return Err(refused("layer.width", "is for scenes in the plane: give one number"));
+    }
+    if scene.period().is_none() {
+        return Err(refused("layer.sides", "takes \"periodic\" sides: elsewhere the indenter comes to an end of the face"));
+    }
+    if scene.contact.quadrature == Quadrature::Gauss {
+        return Err(refused("contact.quadrature", "has a pressure for each node: take \"nodal\""));
+    }
+    if let Some(fluid) = scene.materials.iter().position(|material| {
+        [material.shear_series(), material.bulk_series()].iter().any(|series| series.long_term() <= 0.0)
+    }) {
+        let arms = if scene.materials.len() == 1 { "material.arms".into() } else { format!("material.{fluid}.arms") };
+        return Err(refused(&arms, "needs weights that sum to less than 1: what relaxes to nothing carries no mean pressure"));
+    }
+    let held = held(scene, file)?;
+    let Parts { mesh, shape } = prepare(comm, scene, file)?;
+    let Meshed::Plane(source) = mesh else { return Err(Error::Internal("a plane scene in space".into())) };
+    let friction = scene.friction.as_ref().map(friction).transpose()?;
+    if friction.as_ref().is_some_and(|law| law.strength().remembers()) {
+        return Err(refused("friction.coefficient", "takes no s: what a point has slid grows for ever, and nothing is steady"));
+    }
+    let laws = Laws { profile: Box::new(shape.surface), penalty: body::penalty(scene, &source), friction };
+    let interface = Interface::new(source.face(), laws, quadrature(scene.contact.quadrature));
+    let spacing = interface.points().all().first().map_or(0.0, |point| point.weight);
+    let Materials { regions, times, series, memory: rule } = Materials::new(scene);
+    let solid = Solid { source, dilatation: body::dilatation(scene), regions };
+    let layer = Travelling::new(&solid, &Relaxations { times, rule, series }, spacing)?
+        .ok_or_else(|| Error::Internal("a periodic layer without columns".into()))?;
+    let sliding = Sliding::new(layer, interface, held)?;
+    match held {
+        Held::Approach(approach) if approach <= sliding.lowest() => {
+            let reason = format!("reaches the layer above {:e} m; the last phase is at {approach:e} m", sliding.lowest());
+            Err(refused(&format!("phase.{}.approach", last(scene)?.name), &reason))
+        }
+        _ => Ok(sliding),
+    }
+}
+
+/// What the last phase holds.
+fn held(scene: &Scene, file: &Path) -> Result<Held> {
+    let Some(phase) = course(scene).pop() else { return Err(Error::Internal("a scene without phases".into())) };
+    match phase.force {
+        None => Ok(Held::Approach(phase.approach[1])),
+        Some([_, force]) if force > 0.0 => Ok(Held::Force(force)),
+        Some(_) => {
+            let reason = "mpjr steady: nothing slides without a force; give one above 0, or an approach";
+            Err(Error::scene(file, format!("phase.{}.normal_force", phase.name), reason))
+        }
+    }
+}
