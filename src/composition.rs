@@ -39,8 +39,8 @@ use body::Materials;
 pub use body::{Meshed, Outline, Stretch, outline};
 pub use estimate::Estimate;
 pub use inputs::inputs;
-pub use steady::{last_velocity, steady};
 pub use profile::{Finest, PressedEnd, Shape, elevations, measured, numbers, reach, seam_doubt, shape};
+pub use steady::{last_velocity, steady};
 
 /// A scene made ready to run.
 pub struct Problem {

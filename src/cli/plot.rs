@@ -13,6 +13,7 @@ use crate::input;
 use crate::plot::Sheet;
 use crate::plot::material::{self, Solid};
 use crate::plot::results::{self, Closed, Run};
+use crate::plot::steady::{self, Curves};
 use crate::plot::sweep::{self, Sweep};
 use crate::scene;
 
@@ -79,6 +80,8 @@ fn drawings(arguments: &PlotArguments) -> Result<Vec<Drawing>> {
         of_sweep(input, &arguments.figures)
     } else if is_material {
         of_materials(arguments)
+    } else if let Some(curves) = Curves::open(input)? {
+        of_steady(&curves, arguments)
     } else {
         of_run(input, arguments)
     }
@@ -99,6 +102,25 @@ fn of_run(file: &Path, arguments: &PlotArguments) -> Result<Vec<Drawing>> {
     };
     let draw = |kind: &results::Kind| Ok((format!("{stem}-{}", kind.name), kind.of(&run)?));
     results::FIGURES.iter().filter(wanted).map(draw).collect()
+}
+
+/// STEM-FIGURE for each figure of steady sliding.
+fn of_steady(curves: &Curves, arguments: &PlotArguments) -> Result<Vec<Drawing>> {
+    let asked = arguments.figures.as_slice();
+    let known: Vec<&str> = steady::FIGURES.iter().map(|kind| kind.name).collect();
+    check(asked, &known, "a result file of mpjr steady")?;
+    let closed = arguments.half_disk.or(arguments.half_plane).is_some();
+    if closed || arguments.fractional.is_some() {
+        let reason = "--half-disk, --half-plane, --fractional: only beside the result file of a run; the first argument is of mpjr steady";
+        return Err(Error::Usage(reason.into()));
+    }
+    let stem = arguments.input.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let wanted = |kind: &&steady::Kind| match asked {
+        [] => kind.possible(curves),
+        asked => asked.iter().any(|name| name == kind.name),
+    };
+    let draw = |kind: &steady::Kind| Ok((format!("{stem}-{}", kind.name), kind.of(curves)?));
+    steady::FIGURES.iter().filter(wanted).map(draw).collect()
 }
 
 /// The figures of a sweep by their names alone.
@@ -171,5 +193,8 @@ fn figures_help() -> String {
     let line = |(name, shows): (&str, &str)| format!("  {name:<12} {shows}\n");
     let of_run: String = results::FIGURES.iter().map(|kind| line((kind.name, kind.shows))).collect();
     let of_sweep: String = sweep::FIGURES.iter().map(|kind| line((kind.name, kind.shows))).collect();
-    format!("Figures of a result file:\n{of_run}\nFigures of a sweep:\n{of_sweep}")
+    let of_steady: String = steady::FIGURES.iter().map(|kind| line((kind.name, kind.shows))).collect();
+    format!(
+        "Figures of a result file:\n{of_run}\nFigures of mpjr steady:\n{of_steady}\nFigures of a sweep:\n{of_sweep}"
+    )
 }

@@ -50,7 +50,8 @@ impl FromStr for Ladder {
 
     fn from_str(text: &str) -> std::result::Result<Self, String> {
         let reason = || "must be FROM:TO:PER_DECADE, all above 0 and TO not below FROM, such as 1e-6:1e4:10".to_owned();
-        let numbers: Vec<f64> = text.split(':').map(str::parse).collect::<std::result::Result<_, _>>().map_err(|_| reason())?;
+        let numbers: Vec<f64> =
+            text.split(':').map(str::parse).collect::<std::result::Result<_, _>>().map_err(|_| reason())?;
         let [from, to, per_decade] = numbers[..] else { return Err(reason()) };
         let usable = |number: f64| number > 0.0 && number.is_finite();
         if !(usable(from) && usable(to) && usable(per_decade) && to >= from) {
@@ -84,12 +85,20 @@ fn solve((session, world): (&Session, &SimpleCommunicator), arguments: &SteadyAr
     let mut sliding = composition::steady(world, &scene, file)?;
     let out = arguments.out.clone().unwrap_or_else(|| default_output(file));
     let states = sliding.curve(world, &velocities)?;
-    let mine = if world.rank() == 0 { record((session, world, started), &scene, (file, &out), (&sliding, &states)) } else { Ok(()) };
+    let mine = if world.rank() == 0 {
+        record((session, world, started), &scene, (file, &out), (&sliding, &states))
+    } else {
+        Ok(())
+    };
     agree(world, mine)?;
     if world.rank() == 0 {
         tell(table(&states));
         let count = states.len();
-        tell(format_args!("{count} velocit{} in {}", if count == 1 { "y" } else { "ies" }, seconds(clock.elapsed().as_secs_f64())));
+        tell(format_args!(
+            "{count} velocit{} in {}",
+            if count == 1 { "y" } else { "ies" },
+            seconds(clock.elapsed().as_secs_f64())
+        ));
         tell(format_args!("results:       {}", out.display()));
     }
     Ok(())
@@ -123,7 +132,8 @@ fn table(states: &[State]) -> String {
     let mut text = head.map(|title| format!("{title:>11}")).join(" ");
     let every = states.len().div_ceil(LINES);
     for state in states.iter().step_by(every.max(1)) {
-        let State { velocity, approach, normal_force, tangential_force, hysteretic_force, contact_fraction, .. } = state;
+        let State { velocity, approach, normal_force, tangential_force, hysteretic_force, contact_fraction, .. } =
+            state;
         let friction = (tangential_force + hysteretic_force) / normal_force;
         text += &format!(
             "\n{velocity:>11.4e} {approach:>11.4e} {normal_force:>11.4e} {tangential_force:>11.4e} {hysteretic_force:>11.3e} \

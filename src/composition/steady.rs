@@ -44,7 +44,10 @@ pub fn steady(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<S
         return Err(refused("layer.width", "is for scenes in the plane: give one number"));
     }
     if scene.period().is_none() {
-        return Err(refused("layer.sides", "takes \"periodic\" sides: elsewhere the indenter comes to an end of the face"));
+        return Err(refused(
+            "layer.sides",
+            "takes \"periodic\" sides: elsewhere the indenter comes to an end of the face",
+        ));
     }
     if scene.contact.quadrature == Quadrature::Gauss {
         return Err(refused("contact.quadrature", "has a pressure for each node: take \"nodal\""));
@@ -53,14 +56,20 @@ pub fn steady(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<S
         [material.shear_series(), material.bulk_series()].iter().any(|series| series.long_term() <= 0.0)
     }) {
         let arms = if scene.materials.len() == 1 { "material.arms".into() } else { format!("material.{fluid}.arms") };
-        return Err(refused(&arms, "needs weights that sum to less than 1: what relaxes to nothing carries no mean pressure"));
+        return Err(refused(
+            &arms,
+            "needs weights that sum to less than 1: what relaxes to nothing carries no mean pressure",
+        ));
     }
     let held = held(scene, file)?;
     let Parts { mesh, shape } = prepare(comm, scene, file)?;
     let Meshed::Plane(source) = mesh else { return Err(Error::Internal("a plane scene in space".into())) };
     let friction = scene.friction.as_ref().map(friction).transpose()?;
     if friction.as_ref().is_some_and(|law| law.strength().remembers()) {
-        return Err(refused("friction.coefficient", "takes no s: what a point has slid grows for ever, and nothing is steady"));
+        return Err(refused(
+            "friction.coefficient",
+            "takes no s: what a point has slid grows for ever, and nothing is steady",
+        ));
     }
     let laws = Laws { profile: Box::new(shape.surface), penalty: body::penalty(scene, &source), friction };
     let interface = Interface::new(source.face(), laws, quadrature(scene.contact.quadrature));
@@ -72,7 +81,8 @@ pub fn steady(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<S
     let sliding = Sliding::new(layer, interface, held)?;
     match held {
         Held::Approach(approach) if approach <= sliding.lowest() => {
-            let reason = format!("reaches the layer above {:e} m; the last phase is at {approach:e} m", sliding.lowest());
+            let reason =
+                format!("reaches the layer above {:e} m; the last phase is at {approach:e} m", sliding.lowest());
             Err(refused(&format!("phase.{}.approach", last(scene)?.name), &reason))
         }
         _ => Ok(sliding),

@@ -107,7 +107,12 @@ fn fill(path: &Path, metadata: &Metadata, Curve { times, x, states }: &Curve<'_>
         let values: Vec<f64> = states.iter().flat_map(|state| field(state).iter().copied()).collect();
         skeleton.fixed((GROUP, name), &values, (unit, words), &[velocity, ("x", x.len())])?;
     }
-    skeleton.fixed((GROUP, "x"), x, ("m", "coordinate along the contact face, in the frame of the indenter"), &[("x", x.len())])?;
+    skeleton.fixed(
+        (GROUP, "x"),
+        x,
+        ("m", "coordinate along the contact face, in the frame of the indenter"),
+        &[("x", x.len())],
+    )?;
     skeleton.fixed(("interface", "x"), x, ("m", "undeformed coordinate along the contact face"), &[("x", x.len())])?;
     skeleton.finish()?;
     file.close()

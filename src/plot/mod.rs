@@ -15,6 +15,7 @@ pub mod material;
 mod numbers;
 mod painter;
 pub mod results;
+pub mod steady;
 pub mod sweep;
 mod text;
 mod ticks;

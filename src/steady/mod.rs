@@ -128,7 +128,8 @@ impl Sliding {
     /// The waves of the forces on the nodes, (g, f_z), N/m.
     fn forces(&self, pressure: &[f64], shear: &[f64]) -> Result<Vec<Vector2<Complex<f64>>>> {
         let (p, q) = (self.spectrum.waves(pressure.to_vec())?, self.spectrum.waves(shear.to_vec())?);
-        let force = |(p, q): (Complex<f64>, Complex<f64>)| Vector2::new(q * -Complex::i(), -p) * Complex::from(self.spacing);
+        let force =
+            |(p, q): (Complex<f64>, Complex<f64>)| Vector2::new(q * -Complex::i(), -p) * Complex::from(self.spacing);
         Ok(p.into_iter().zip(q).map(force).collect())
     }
 

@@ -6,6 +6,7 @@
 //! the memory's error at that step, or the tolerance of the solver. It is not what happened to be found.
 
 mod appendix_a;
+mod curve;
 mod half_space;
 mod kernel;
 mod load;
@@ -175,6 +176,7 @@ pub fn cases(quick: bool) -> Result<Vec<Case>> {
     }
     list.extend(relaxation::cases(quick));
     list.extend(steady::cases(quick));
+    list.extend(curve::cases(quick));
     list.extend(sliding::cases(quick));
     list.extend(load::cases(quick));
     Ok(list)

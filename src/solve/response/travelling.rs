@@ -55,7 +55,11 @@ enum Waves<'a> {
 
 impl Travelling {
     /// A layer with nodes this far apart, m; none of a body that is no periodic layer.
-    pub fn new(solid: &Solid<2>, Relaxations { times, series, .. }: &Relaxations, spacing: f64) -> Result<Option<Self>> {
+    pub fn new(
+        solid: &Solid<2>,
+        Relaxations { times, series, .. }: &Relaxations,
+        spacing: f64,
+    ) -> Result<Option<Self>> {
         let Some(column) = PeriodicColumn::new(solid) else { return Ok(None) };
         let transform = column.transform();
         let form = match series.len() {
