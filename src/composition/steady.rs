@@ -61,6 +61,9 @@ pub fn steady(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<S
             "needs weights that sum to less than 1: what relaxes to nothing carries no mean pressure",
         ));
     }
+    if scene.mount.is_some() {
+        return Err(refused("mount", "holds an approach or a force, and nothing between: take the table out"));
+    }
     let held = held(scene, file)?;
     let Parts { mesh, shape } = prepare(comm, scene, file)?;
     let Meshed::Plane(source) = mesh else { return Err(Error::Internal("a plane scene in space".into())) };
