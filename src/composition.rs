@@ -3,6 +3,7 @@
 mod body;
 mod estimate;
 mod inputs;
+mod pressed;
 mod profile;
 mod steady;
 mod surface;
@@ -39,7 +40,8 @@ use body::Materials;
 pub use body::{Meshed, Outline, Stretch, outline};
 pub use estimate::Estimate;
 pub use inputs::inputs;
-pub use profile::{Finest, PressedEnd, Shape, elevations, measured, numbers, reach, seam_doubt, shape};
+pub use pressed::PressedEnd;
+pub use profile::{Finest, Shape, elevations, measured, numbers, reach, seam_doubt, shape};
 pub use steady::{last_velocity, steady};
 
 /// A scene made ready to run.

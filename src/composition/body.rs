@@ -192,6 +192,11 @@ impl Stretch {
         self.to - self.from
     }
 
+    /// Its nodes where its edges are of one length, both ends among them, m.
+    pub fn nodes(self) -> impl Iterator<Item = f64> {
+        (0..=self.edges).map(move |i| self.from + self.width() * (i as f64 / self.edges as f64))
+    }
+
     /// The mean length of an edge along x, m.
     pub fn cell(&self) -> f64 {
         self.width() / self.edges as f64

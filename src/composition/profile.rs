@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::rc::Rc;
 
-use super::{Outline, Stretch, course, phases, surface};
+use super::pressed::{PressedEnd, pressed_end};
+use super::{Outline, Stretch, course, surface};
 use crate::error::{Error, Result};
 use crate::expression::Expression;
 use crate::input;
-use crate::loading::{Phase, Placement};
 use crate::profile::{
     BLEND, Circle, Extruded, Formula, Harmonic, Parabola, Point, Profile, Repeated, Rms, Rough, Roughness, Sampled,
     Surface, Survey, Wedge,
@@ -34,15 +34,6 @@ pub struct Shape {
     pub survey: Survey,
     /// Where the indenter first presses on what cannot give way.
     pub pressed: Option<PressedEnd>,
-}
-
-/// A clamped end of the face under the indenter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PressedEnd {
-    /// m
-    pub x: f64,
-    /// The end of the first step in which it is, s.
-    pub time: f64,
 }
 
 /// The finest detail of a profile.
@@ -110,7 +101,7 @@ pub(super) fn bytes(name: &str, file: &Path) -> Result<Vec<u8>> {
 pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], outline: &Outline) -> Result<Shape> {
     let face = outline.face;
     if let Some(across) = outline.across
-        && let Some(shape) = surface::shape(scene, file, [face, across])?
+        && let Some(shape) = surface::shape((scene, file), [face, across], outline)?
     {
         return Ok(shape);
     }
@@ -150,11 +141,7 @@ pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], outline: &Outline) 
             Box::new(profile)
         }
         Indenter::Rough { hurst, rms, shortest, longest, period, seed } => {
-            let rms = match rms {
-                scene::Rms::RmsSlope(slope) => Rms::Slope(slope),
-                scene::Rms::RmsHeight(height) => Rms::Height(height),
-            };
-            let roughness = Roughness { hurst, rms, shortest, longest, period, seed };
+            let roughness = Roughness { hurst, rms: rms.into(), shortest, longest, period, seed };
             let waves = waves(&roughness).map_err(|(key, reason)| wrong(key, reason))?;
             finest = Some(Finest::Wavelength(shortest));
             detail = Some(format!("{waves} waves, repeating after {period:?} m"));
@@ -162,41 +149,10 @@ pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], outline: &Outline) 
         }
     };
     let survey = survey(&*profile, face).map_err(|error| wrong("profile", error.to_string()))?;
-    let pressed = pressed_end(&*profile, scene, face);
-    if let (Some(PressedEnd { x, time }), None) = (pressed, &scene.contact.penalty) {
-        let reason = format!(
-            "is contact without penetration, but from t = {time:.4e} s the indenter presses on the clamped end of the \
-             face at x = {x:?} m, which cannot give way; keep it off the ends, or give a penalty"
-        );
-        return Err(Error::scene(file, "contact", reason));
-    }
     let profile: Rc<dyn Profile> = Rc::from(profile);
     let surface = Rc::new(Extruded(profile.clone()));
+    let pressed = pressed_end(&*surface, (scene, file), outline)?;
     Ok(Shape { surface, profile, finest, detail, unit, seam, survey, pressed })
-}
-
-/// Where and when the indenter first presses on a clamped end of the face, as far as planned steps can tell.
-fn pressed_end(profile: &dyn Profile, scene: &Scene, face: Stretch) -> Option<PressedEnd> {
-    /// Of an adaptive phase, whose steps are not planned.
-    const MOMENTS: u32 = 64;
-    let ends: Vec<(f64, f64)> =
-        [face.from, face.to].into_iter().zip(face.clamped).filter_map(|(x, clamped)| Some((x, clamped?))).collect();
-    if ends.is_empty() {
-        return None;
-    }
-    let pressed = |phase: &Phase, time: f64| {
-        let Placement { approach, sliding, .. } = phase.placement(time, 0.0);
-        let presses =
-            |&&(x, recess): &&(f64, f64)| profile.at(x - sliding.x).is_ok_and(|h| h.height + recess < approach);
-        ends.iter().find(presses).map(|&(x, _)| PressedEnd { x, time })
-    };
-    phases(scene, 0.0).iter().find_map(|phase| match phase.adaptive {
-        Some(_) => {
-            let times = (1..=MOMENTS).map(|i| phase.start + phase.duration * f64::from(i) / f64::from(MOMENTS));
-            times.into_iter().find_map(|time| pressed(phase, time))
-        }
-        None => phase.steps.iter().find_map(|step| pressed(phase, step.time)),
-    })
 }
 
 /// Points on every cell of the face for what is checked or measured by sampling, and the most of them.
@@ -336,6 +292,15 @@ fn bounded(points: Vec<Point>, scene: &Scene, face: Stretch) -> std::result::Res
          {last:?} m; give a longer profile, slide less, or say extend = \"periodic\"",
         face.width()
     ))
+}
+
+impl From<scene::Rms> for Rms {
+    fn from(rms: scene::Rms) -> Self {
+        match rms {
+            scene::Rms::RmsSlope(slope) => Self::Slope(slope),
+            scene::Rms::RmsHeight(height) => Self::Height(height),
+        }
+    }
 }
 
 /// A rough profile has waves, and not too many to be added up; how many.

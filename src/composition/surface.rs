@@ -1,15 +1,20 @@
 //! The indenter's profile in space.
 
+use std::f64::consts::PI;
 use std::path::Path;
 use std::rc::Rc;
 
 use nalgebra::Vector2;
 
+use super::pressed::pressed_end;
 use super::profile::{Finest, Shape, survey};
-use super::{Stretch, course};
+use super::{Outline, Stretch, course};
 use crate::error::{Error, Result};
 use crate::expression::Expression;
-use crate::profile::{Cone, Paraboloid, Profile, RepeatedSurface, Section, Sphere, Surface, SurfaceFormula, Waves};
+use crate::profile::{
+    Cone, Paraboloid, Profile, RepeatedSurface, RoughSurface, Roughness, Section, Sphere, Surface, SurfaceFormula,
+    Waves,
+};
 use crate::scene::{Indenter, Scene};
 
 /// The profile of the scene in `file` over a face of two directions; none where it is the same for every y. Along periodic sides
@@ -17,14 +22,14 @@ use crate::scene::{Indenter, Scene};
 ///
 /// # Errors
 /// [`Error::Scene`] where a formula is none, or not finite over the face, or has a jump where it repeats.
-pub(super) fn shape(scene: &Scene, file: &Path, face: [Stretch; 2]) -> Result<Option<Shape>> {
+pub(super) fn shape((scene, file): (&Scene, &Path), face: [Stretch; 2], outline: &Outline) -> Result<Option<Shape>> {
     let periods = face.map(|along| along.periodic.then_some(along.width()));
     let middle = Vector2::from(face.map(|along| 0.5 * (along.from + along.to)));
     let wrong = |key: &str, reason: String| Error::scene(file, format!("indenter.{key}"), reason);
     let repeated = |surface: Box<dyn Surface>, centre| -> Rc<dyn Surface> {
         Rc::new(RepeatedSurface { surface, centre, periods })
     };
-    let mut finest = None;
+    let (mut finest, mut detail) = (None, None);
     let surface = match scene.indenter {
         Indenter::Paraboloid { radius, centre } => repeated(Box::new(Paraboloid { radii: radius, centre }), centre),
         Indenter::Sphere { radius, centre } => repeated(Box::new(Sphere { radius, centre }), centre),
@@ -40,12 +45,20 @@ pub(super) fn shape(scene: &Scene, file: &Path, face: [Stretch; 2]) -> Result<Op
             check(&surface, scene, face).map_err(|reason| wrong("formula", format!("{formula:?} {reason}")))?;
             repeated(Box::new(surface), middle)
         }
+        Indenter::Rough { hurst, rms, shortest, longest, period, seed } => {
+            let roughness = Roughness { hurst, rms: rms.into(), shortest, longest, period, seed };
+            let waves = waves(&roughness).map_err(|(key, reason)| wrong(key, reason))?;
+            finest = Some(Finest::Wavelength(shortest));
+            detail = Some(format!("{waves} waves, repeating after {period:?} m along x and along y"));
+            Rc::new(RoughSurface::new(roughness, period))
+        }
         _ => return Ok(None),
     };
+    let pressed = pressed_end(&*surface, (scene, file), outline)?;
     let lowest = lowest(&*surface, face).map_err(|error| wrong("profile", error.to_string()))?;
     let profile: Rc<dyn Profile> = Rc::new(Section { surface: surface.clone(), y: lowest.y });
     let survey = survey(&profile, face[0]).map_err(|error| wrong("profile", error.to_string()))?;
-    let (detail, unit, seam, pressed) = (None, None, None, None);
+    let (unit, seam) = (None, None);
     Ok(Some(Shape { surface, profile, finest, detail, unit, seam, survey, pressed }))
 }
 
@@ -57,6 +70,26 @@ fn places([x, y]: [Stretch; 2]) -> impl Iterator<Item = Vector2<f64>> {
     let [columns, rows] = [x, y].map(|along| along.edges.min(MOST));
     let at = |along: Stretch, i: usize, count: usize| along.from + along.width() * i as f64 / count as f64;
     (0..=columns).flat_map(move |i| (0..=rows).map(move |j| Vector2::new(at(x, i, columns), at(y, j, rows))))
+}
+
+/// A rough surface has waves, and not too many to be added up; how many.
+fn waves(roughness: &Roughness) -> std::result::Result<usize, (&'static str, String)> {
+    const MOST: usize = 120_000;
+    let Roughness { shortest, longest, period, .. } = *roughness;
+    // Half of the disc of wave vectors, before they are counted one by one.
+    let disc = 0.5 * PI * (period / shortest).powi(2);
+    let count = if disc > 2.0 * MOST as f64 { disc as usize } else { RoughSurface::count(roughness, period) };
+    match count {
+        0 => Err((
+            "period",
+            format!(
+                "must have a wave vector of its lattice between shortest ({shortest:?} m) and longest ({longest:?} m), got \
+                 {period:?}"
+            ),
+        )),
+        1..=MOST => Ok(count),
+        _ => Err(("shortest", format!("makes {count} waves in a period of {period:?} m; at most {MOST} are added up"))),
+    }
 }
 
 /// Where a surface is lowest over the face, m.

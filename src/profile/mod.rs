@@ -3,6 +3,7 @@
 mod expression;
 pub mod profilometer;
 mod rough;
+mod rough_surface;
 mod sampled;
 mod smooth;
 mod solids;
@@ -15,6 +16,7 @@ use crate::error::Result;
 
 pub use expression::Formula;
 pub use rough::{Rms, Rough, Roughness};
+pub use rough_surface::RoughSurface;
 pub use sampled::{BLEND, Point, Sampled, WALL};
 pub use smooth::{Circle, Harmonic, Parabola, Wedge};
 pub use solids::{Cone, Paraboloid, Sphere, Waves};

@@ -55,10 +55,10 @@ pub struct Rough {
 }
 
 /// Real and imaginary part.
-type Complex = [f64; 2];
+pub(super) type Complex = [f64; 2];
 
 /// Points to the shortest wavelength among which the lowest is looked for.
-pub const GRID: usize = 8;
+pub(super) const GRID: usize = 8;
 
 impl Roughness {
     /// The wave numbers n of the period: those whose wavelength is between shortest and longest, to round-off.
@@ -83,7 +83,7 @@ impl Rough {
         let (Rms::Height(rms) | Rms::Slope(rms)) = rms;
         let scale = rms / (square / 2.0).sqrt();
         let wave = |(n, shape): (usize, &f64)| {
-            let (sin, cos) = libm::sincos(2.0 * PI * fraction(seed, n));
+            let (sin, cos) = libm::sincos(2.0 * PI * fraction(seed, n as u64));
             let a = scale * shape;
             [[a * cos, a * sin], [q(n) * a * cos, q(n) * a * sin]]
         };
@@ -110,10 +110,6 @@ impl Rough {
     ///
     /// by Horner's rule from the shortest wave down, with no sine or cosine but the first.
     fn wave_sum(&self, fraction: f64) -> Elevation {
-        let turn = |turns: f64| {
-            let (sin, cos) = libm::sincos(2.0 * PI * (turns - turns.round()));
-            [cos, sin]
-        };
         let z = turn(fraction);
         let [mut height, mut slope] = [[0.0; 2]; 2];
         for [c, qc] in self.waves.iter().rev() {
@@ -133,6 +129,12 @@ impl Profile for Rough {
     }
 }
 
+/// cos and sin of so many turns.
+pub(super) fn turn(turns: f64) -> Complex {
+    let (sin, cos) = libm::sincos(2.0 * PI * (turns - turns.round()));
+    [cos, sin]
+}
+
 fn times(a: Complex, b: Complex) -> Complex {
     [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
 }
@@ -142,8 +144,8 @@ fn add(a: Complex, b: Complex) -> Complex {
 }
 
 /// The n-th number (from 1) of SplitMix64 from `seed`, in [0, 1).
-fn fraction(seed: u64, n: usize) -> f64 {
-    (split_mix(seed, n as u64) >> 11) as f64 / (1u64 << 53) as f64
+pub(super) fn fraction(seed: u64, n: u64) -> f64 {
+    (split_mix(seed, n) >> 11) as f64 / (1u64 << 53) as f64
 }
 
 fn split_mix(seed: u64, n: u64) -> u64 {

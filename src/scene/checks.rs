@@ -83,15 +83,12 @@ fn strata(layer: &Layer, materials: &[Material]) -> Check {
     Ok(())
 }
 
-/// What has a direction of its own is for space; what is not there yet is refused.
+/// What has a direction of its own is for space.
 fn in_space(scene: &Scene) -> Check {
     const SPACE: &str = "is for scenes in space: give layer.width as an array of two, along x and along y";
     let space = scene.is_in_space();
     if scene.indenter.needs_space() && !space {
         return fail("indenter.profile", SPACE);
-    }
-    if space && matches!(scene.indenter, Indenter::Rough { .. }) {
-        return fail("indenter.profile", "\"rough\" is not there in space yet; give an expression, or a plane scene");
     }
     for phase in &scene.phases {
         let (key, across) = match phase.motion {
@@ -136,6 +133,11 @@ fn period(layer: &Layer, indenter: &Indenter) -> Check {
                 whole_periods(span.width, "wavelengths", *wavelength).or_else(|reason| fail("layer.width", reason))?;
             }
         }
+    }
+    if let (Indenter::Rough { period, .. }, Some(across)) = (indenter, layer.spans.get(1))
+        && across.sides == Sides::Periodic
+    {
+        whole_periods(across.width, "periods of the profile", *period).or_else(|reason| fail("layer.width", reason))?;
     }
     let (what, period) = match *indenter {
         _ if sides != Sides::Periodic => return Ok(()),

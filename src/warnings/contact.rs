@@ -59,9 +59,9 @@ pub fn few_nodes(before: &Before<'_>) -> Option<Warning> {
 
 /// What cannot give way is pressed on.
 pub fn pressed_end(before: &Before<'_>) -> Option<Warning> {
-    let PressedEnd { x, time } = before.shape.pressed?;
+    let PressedEnd { place, time } = before.shape.pressed.as_ref()?;
     let text = format!(
-        "from t = {time:.4e} s the indenter presses on the clamped end of the face at x = {x:?} m, which cannot give way: N \
+        "from t = {time:.4e} s the indenter presses on the clamped end of the face at {place}, which cannot give way: N \
          grows with the penalty there; keep it off the ends"
     );
     Some(Warning::new("layer.sides", text))
