@@ -108,7 +108,7 @@ impl Travelling {
 
 impl Moving<'_> {
     /// The compliance of the face to each wave of forces on its nodes, m per N/m; along the face u = i v and f = i g, as in
-    /// [`super::waves`].
+    /// `super::waves`.
     pub fn compliances(&self) -> Vec<Matrix2<Complex<f64>>> {
         match &self.waves {
             Waves::Alike(elastic, factors) => {
