@@ -2,7 +2,8 @@
 //!
 //! A pipe without a writer never opens and `/dev/zero` never ends; only regular files are read.
 
-use std::fs::{self, FileType};
+use std::fs::{self, File, FileType};
+use std::io::Read;
 use std::os::unix::fs::FileTypeExt;
 use std::path::Path;
 
@@ -49,4 +50,18 @@ fn name(kind: FileType) -> &'static str {
         kind if kind.is_socket() => "a socket",
         _ => "a device",
     }
+}
+
+/// Whether the regular file at `path` begins with one of these.
+pub fn begins_with(path: &Path, marks: &[&[u8]]) -> bool {
+    let begin = beginning(path, marks.iter().map(|mark| mark.len()).max().unwrap_or(0));
+    begin.is_some_and(|begin| marks.iter().any(|mark| begin.starts_with(mark)))
+}
+
+/// The first bytes of a regular file.
+pub fn beginning(path: &Path, length: usize) -> Option<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let about = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file);
+    about.and_then(|_| File::open(path).ok())?.take(length as u64).read_to_end(&mut bytes).ok()?;
+    Some(bytes)
 }

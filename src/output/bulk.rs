@@ -19,7 +19,7 @@ use mpi::datatype::{Partition, PartitionMut};
 use mpi::traits::{Communicator, CommunicatorCollectives, Equivalence};
 
 use super::columns::BULK;
-use super::recorder::{State, bytes};
+use super::state::{State, bytes};
 use super::store::{Table, failed, place};
 use super::{Recorder, xdmf};
 use crate::checksum::row_sum;

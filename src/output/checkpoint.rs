@@ -14,10 +14,11 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::ours::{self, scratch};
+use super::scratch::scratch;
 use super::store::failed;
 use crate::checksum::checksum;
 use crate::error::{Error, Result};
+use crate::input;
 
 /// The number goes up when what a checkpoint holds changes its meaning.
 const MARK: &[u8] = b"mpjr checkpoint 5\n";
@@ -84,7 +85,7 @@ pub fn read(results: &Path) -> Result<Option<Checkpoint>> {
 /// Removes the checkpoint of the result file `results`, if there is one.
 pub fn remove(results: &Path) -> Result<()> {
     let path = beside(results);
-    if !ours::begins_with(&path, &[ANY_MARK]) {
+    if !input::begins_with(&path, &[ANY_MARK]) {
         return Ok(());
     }
     match std::fs::remove_file(&path) {

@@ -1,26 +1,17 @@
 //! What this program may replace or remove: what it wrote itself, under whatever name.
 
-use std::fs::File;
-use std::io::{ErrorKind, Read};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use super::scratch::{self, HALF};
 use super::{checkpoint, reader, xdmf};
 use crate::error::{Error, Result};
-
-/// A name beside `path` that no other process uses, for a file that is renamed to `path` when it is whole.
-pub fn scratch(path: &Path) -> PathBuf {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!("{BEFORE_PID}{}{AFTER_PID}", std::process::id()));
-    path.with_file_name(name)
-}
-
-const BEFORE_PID: &str = ".mpjr-";
-const AFTER_PID: &str = ".part";
+use crate::input;
 
 /// Refuses results at `path` where that, or a file that belongs to them, is there and was not written by this program;
 /// removes what its processes that were killed left half written.
 pub(super) fn make_way(path: &Path) -> Result<()> {
-    let taken = [(".checkpoint", "a checkpoint"), (AFTER_PID, "a file that is not whole yet")];
+    let taken = [(".checkpoint", "a checkpoint"), (HALF, "a file that is not whole yet")];
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     if let Some((_, what)) = taken.iter().find(|(end, _)| name.ends_with(end)) {
         return Err(Error::file(path, format!("is the name of {what}; end the name of the results in .h5")));
@@ -33,7 +24,7 @@ pub(super) fn make_way(path: &Path) -> Result<()> {
     xdmf::refuse_same_name(path)?;
     refuse(path, reader::is_ours)?;
     let others = [xdmf::beside(path), checkpoint::beside(path)];
-    others.iter().try_for_each(|other| refuse(other, |other| begins_with(other, &MARKS)))?;
+    others.iter().try_for_each(|other| refuse(other, |other| input::begins_with(other, &MARKS)))?;
     others.iter().map(PathBuf::as_path).chain([path]).for_each(|path| remove_stale(path, is_half_written));
     Ok(())
 }
@@ -53,25 +44,11 @@ fn refuse(path: &Path, ours: impl FnOnce(&Path) -> bool) -> Result<()> {
 /// How the files begin that belong to results.
 const MARKS: [&[u8]; 2] = [checkpoint::ANY_MARK, xdmf::BEGIN];
 
-/// Whether the regular file at `path` begins with one of these.
-pub(super) fn begins_with(path: &Path, marks: &[&[u8]]) -> bool {
-    let begin = beginning(path, marks.iter().map(|mark| mark.len()).max().unwrap_or(0));
-    begin.is_some_and(|begin| marks.iter().any(|mark| begin.starts_with(mark)))
-}
-
-/// The first bytes of a regular file.
-fn beginning(path: &Path, length: usize) -> Option<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let about = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file);
-    about.and_then(|_| File::open(path).ok())?.take(length as u64).read_to_end(&mut bytes).ok()?;
-    Some(bytes)
-}
-
 /// Refuses a table at `path` whose first line is not `ours`, and removes what killed processes left of such.
 pub fn make_way_for_table(path: &Path, ours: impl Fn(&str) -> bool) -> Result<()> {
     const LONGEST: usize = 1 << 16;
     let ours = |path: &Path| {
-        let begin = beginning(path, LONGEST).unwrap_or_default();
+        let begin = input::beginning(path, LONGEST).unwrap_or_default();
         ours(String::from_utf8_lossy(&begin).lines().next().unwrap_or_default())
     };
     refuse(path, ours)?;
@@ -82,11 +59,8 @@ pub fn make_way_for_table(path: &Path, ours: impl Fn(&str) -> bool) -> Result<()
 /// Removes the files that processes which are no more were to rename to `path`, and that are `ours`.
 fn remove_stale(path: &Path, ours: impl Fn(&Path) -> bool) {
     let directory = path.parent().filter(|directory| !directory.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let begin = format!("{}{BEFORE_PID}", path.file_name().unwrap_or_default().to_string_lossy());
     for entry in std::fs::read_dir(directory).into_iter().flatten().flatten() {
-        let name = entry.file_name();
-        let pid =
-            name.to_str().and_then(|name| name.strip_prefix(&begin)?.strip_suffix(AFTER_PID)?.parse::<u32>().ok());
+        let pid = scratch::process(path, &entry.file_name());
         if pid.is_some_and(|pid| !Path::new(&format!("/proc/{pid}")).exists()) && ours(&entry.path()) {
             // One that stays does no harm.
             let _ = std::fs::remove_file(entry.path());
@@ -98,7 +72,7 @@ fn remove_stale(path: &Path, ours: impl Fn(&Path) -> bool) {
 /// yet, or the beginning of another file.
 fn is_half_written(path: &Path) -> bool {
     const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
-    let Some(begin) = beginning(path, HDF5.len()) else { return false };
+    let Some(begin) = input::beginning(path, HDF5.len()) else { return false };
     let unborn = begin.iter().all(|&byte| byte == 0) || begin == HDF5;
-    reader::is_ours(path) || unborn && hdf5::File::open(path).is_err() || begins_with(path, &MARKS)
+    reader::is_ours(path) || unborn && hdf5::File::open(path).is_err() || input::begins_with(path, &MARKS)
 }

@@ -16,8 +16,9 @@ use hdf5::{Dataset, H5Type, Hyperslab, SliceOrIndex};
 use ndarray::ArrayViewD;
 
 use super::reader::Results;
-use super::recorder::State;
+use super::scratch::scratch;
 use super::skeleton::{self, Purpose};
+use super::state::State;
 use super::store::{Rows as Stored, Table};
 use super::{BulkPlan, Plan};
 use crate::error::{Error, Result};
@@ -47,7 +48,7 @@ pub(super) fn pack(state: &State) {
     if room / 2 < whole {
         return;
     }
-    let scratch = super::ours::scratch(path);
+    let scratch = scratch(path);
     if pack_into(state, &scratch).is_err() {
         // A leftover does no harm.
         let _ = std::fs::remove_file(&scratch);

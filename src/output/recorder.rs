@@ -6,10 +6,11 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime};
 
-use super::columns::{self, Value};
+use super::columns;
 use super::reader::Results;
-use super::store::{Store, Table, failed};
-use super::xdmf::MeshSize;
+use super::scratch::scratch;
+use super::state::State;
+use super::store::{Store, failed};
 use super::{HistoryRow, InterfaceFrame, Metadata, Plan, Rows, Status, ours, pack, resume, skeleton, xdmf};
 use crate::error::{Error, Result};
 
@@ -32,20 +33,6 @@ struct Shared {
     woken: Condvar,
 }
 
-#[derive(Debug)]
-pub(super) struct State {
-    pub(super) store: Store,
-    pub(super) plan: Plan,
-    pub(super) version: String,
-    pub(super) mesh: Option<MeshSize>,
-    pub(super) bulk_times: Vec<f64>,
-    pub(super) begun: Instant,
-    history: Vec<HistoryRow>,
-    interface: Vec<InterfaceFrame>,
-    failure: Option<Error>,
-    closing: bool,
-}
-
 impl Recorder {
     /// Creates the file `path` with `first`, the unloaded state, as row 0 of its history. An existing file is
     /// replaced only if this program wrote it, and only once the new one is complete.
@@ -56,7 +43,7 @@ impl Recorder {
     pub fn create(path: &Path, metadata: &Metadata, plan: Plan, first: &HistoryRow) -> Result<Self> {
         let path = absolute(path)?;
         ours::make_way(&path)?;
-        let scratch = ours::scratch(&path);
+        let scratch = scratch(&path);
         // The system's words on a directory that cannot be written are plainer than the library's.
         let probe = OpenOptions::new().write(true).create_new(true).open(&scratch);
         probe
@@ -234,80 +221,6 @@ impl Shared {
             }
         }
     }
-}
-
-impl State {
-    /// Nothing waits to be written.
-    pub(super) fn new(store: Store, plan: Plan, version: String, begun: Instant) -> Self {
-        // Coordinates and cells are in the file and are not needed twice.
-        let (plan, bulk) = (Plan { bulk: None, ..plan }, plan.bulk);
-        Self {
-            store,
-            plan,
-            version,
-            mesh: bulk.as_ref().map(MeshSize::of),
-            bulk_times: Vec::new(),
-            begun,
-            history: Vec::new(),
-            interface: Vec::new(),
-            failure: None,
-            closing: false,
-        }
-    }
-
-    /// The error that the writer thread met, if it did.
-    pub(super) fn check(&self) -> Result<()> {
-        self.failure.clone().map_or(Ok(()), Err)
-    }
-
-    /// Writes all pending rows; on an error they stay pending and the file stays at its last good state.
-    pub(super) fn flush(&mut self) -> Result<()> {
-        if self.history.is_empty() && self.interface.is_empty() {
-            return Ok(());
-        }
-        self.make_room(Table::History, self.history.len())?;
-        self.make_room(Table::Interface, self.interface.len())?;
-        let file = self.store.open()?;
-        let [mut history, mut interface] = [0_u64; 2];
-        for (ahead, mut row) in self.history.iter().copied().enumerate() {
-            let directions = self.plan.face.axes() - 1;
-            let values: Vec<Vec<u8>> = columns::history(self.plan.extra)
-                .map(|column| match column.value {
-                    Value::Real(of) => bytes(&[*of(&mut row)]),
-                    Value::Count(of) => (*of(&mut row) as i64).to_ne_bytes().to_vec(),
-                    Value::Along(of) => bytes(&of.map(|of| *of(&mut row))[..directions]),
-                })
-                .collect();
-            let values: Vec<&[u8]> = values.iter().map(|value| value.as_slice()).collect();
-            history = self.store.write_row(&file, Table::History, ahead, &values)?.wrapping_add(history);
-        }
-        for (ahead, frame) in self.interface.iter().enumerate() {
-            let fields = columns::interface(self.plan.face.axes());
-            let mut values: Vec<Vec<u8>> = fields.map(|field| bytes((field.values)(frame))).collect();
-            values.push(bytes(&[frame.time]));
-            let values: Vec<&[u8]> = values.iter().map(Vec::as_slice).collect();
-            interface = self.store.write_row(&file, Table::Interface, ahead, &values)?.wrapping_add(interface);
-        }
-        self.store.set_wall_seconds(&file, self.begun.elapsed().as_secs_f64())?;
-        let [rows, frames] = [self.history.len(), self.interface.len()];
-        self.store.commit(&file, &[(Table::History, rows, history), (Table::Interface, frames, interface)])?;
-        self.history.clear();
-        self.interface.clear();
-        Ok(())
-    }
-
-    /// Sees to it that `count` more rows fit into the table.
-    pub(super) fn make_room(&mut self, table: Table, count: usize) -> Result<()> {
-        while self.store.rows(table) + count > self.store.capacity(table) {
-            self.store = self.store.grown(table)?;
-        }
-        Ok(())
-    }
-}
-
-/// The numbers as the file has them.
-pub(super) fn bytes(values: &[f64]) -> Vec<u8> {
-    values.iter().flat_map(|value| value.to_ne_bytes()).collect()
 }
 
 /// Makes the file complete with row 0 under the name `scratch`, then puts it at `path`.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::columns::{self, Value};
 use super::reader::{Field, Results};
-use super::recorder::{State, bytes};
+use super::state::{State, bytes};
 use super::store::{self, Store, Table};
 use super::{Plan, Rows, Status, xdmf};
 use crate::error::{Error, Result};

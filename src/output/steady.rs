@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::SystemTime;
 
+use super::scratch::scratch;
 use super::skeleton::{Purpose, Skeleton, root_attributes};
 use super::{Metadata, Status, ours};
 use crate::error::{Error, Result};
@@ -71,7 +72,7 @@ const FIELDS: [Field; 3] = [
 /// [`Error::File`] when it is somebody else's or cannot be written; nothing was changed then.
 pub fn write(path: &Path, metadata: &Metadata, curve: &Curve<'_>) -> Result<()> {
     ours::make_way(path)?;
-    let scratch = ours::scratch(path);
+    let scratch = scratch(path);
     let cannot = |error: &dyn std::fmt::Display| {
         Error::file(path, format!("cannot be created: {error}; name another file with --out"))
     };

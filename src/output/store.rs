@@ -6,6 +6,7 @@ use std::os::unix::fs::{FileExt, MetadataExt};
 use std::path::{Path, PathBuf};
 
 use super::columns::{self, BULK};
+use super::scratch::scratch;
 use super::{Plan, Status, locate, skeleton};
 use crate::checksum::row_sum;
 use crate::error::{Error, Result};
@@ -319,7 +320,7 @@ impl Store {
     /// The same file after a change by the library, for which the file is copied and put in the place of the old one by
     /// a rename, so that at every moment one of the two is there.
     fn changed(&self, what: &str, change: &dyn Fn(&hdf5::File) -> hdf5::Result<()>) -> Result<Self> {
-        let scratch = super::ours::scratch(&self.path);
+        let scratch = scratch(&self.path);
         let changed = self.changed_copy(what, change, &scratch);
         if changed.is_err() {
             // The error at hand says more than one about a leftover.

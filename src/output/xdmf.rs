@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::BulkPlan;
 use super::columns::{self, BULK, Components};
+use super::scratch::scratch;
 use crate::error::{Error, Result};
 
 /// How a file begins that this program wrote.
@@ -55,7 +56,7 @@ pub(super) fn remove_stale(results: &Path) -> Result<()> {
 /// Writes the file anew with one grid for each of `times`, s; readers see the old one or the new one.
 pub(super) fn write(results: &Path, version: &str, mesh: MeshSize, times: &[f64]) -> Result<()> {
     let path = beside(results);
-    let scratch = super::ours::scratch(&path);
+    let scratch = scratch(&path);
     let name = results.file_name().unwrap_or_default().to_string_lossy();
     let document = text(&escape(&name), version, mesh, times);
     let outcome = std::fs::write(&scratch, document).and_then(|()| std::fs::rename(&scratch, &path));

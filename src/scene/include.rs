@@ -5,10 +5,11 @@ use std::path::Path;
 
 use toml::{Table, Value};
 
+use super::document::parse;
 use super::friction::tables_in;
 use super::keys::tables::MATERIAL_FILE;
 use super::keys::{self, Section};
-use super::read::{self, material};
+use super::read::material;
 use crate::error::{Error, Result};
 use crate::input;
 use crate::table::{self as numbers, Fault};
@@ -121,7 +122,7 @@ fn expand(table: &mut Table, path: &str, scene: &Path, load: Load) -> Result<()>
 
 /// The `[material]` table of a material file, which must be one that a scene could have.
 fn whole(text: &str, file: &Path) -> Result<Table> {
-    let table = read::parse(text, file)?;
+    let table = parse(text, file)?;
     let root = Section::root(file, &table, &MATERIAL_FILE);
     let section = root.section("material")?;
     root.only_known()?;

@@ -5,10 +5,12 @@
 
 mod checks;
 mod differences;
+mod document;
 mod friction;
 mod include;
 mod indenter;
 mod keys;
+mod load;
 mod material;
 mod mount;
 mod overrides;
@@ -25,14 +27,15 @@ use serde::Serialize;
 
 pub use checks::whole_periods;
 pub use differences::{differences, obstacles};
+pub use document::parse;
 pub use friction::{Coefficient, Friction, Law};
 pub use include::{Load, include, open};
 pub use indenter::{Detrend, Extend, Indenter, Reading, Rms, Seam};
 pub(crate) use keys::nearest;
+pub use load::{from_table, read, read_with};
 pub use mount::{Mount, MountEnd};
 pub use overrides::{get, set};
 pub use penalty::{added_compliance, penalty_for, penalty_on_mesh, shortest_step};
-pub use read::{from_table, parse, read, read_with};
 
 /// One scene: the layer, its material, the indenter, the contact, the loading history, and what to keep of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]

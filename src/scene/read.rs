@@ -15,68 +15,14 @@ use toml::Table;
 use super::keys::tables::{self, QUADRATURES, STRATEGIES};
 use super::keys::{self, Section};
 use super::{
-    Body, Contact, Load, Material, Output, Penalty, Phase, Quadrature, Scene, Solver, Source, Strategy, When, checks,
-    include, overrides, penalty_for, shortest_step,
+    Body, Contact, Material, Output, Penalty, Phase, Quadrature, Scene, Solver, Strategy, When, checks, penalty_for,
+    shortest_step,
 };
-use crate::error::{Error, Result};
+use crate::error::Result;
 
-/// Reads and checks a scene on one process.
-///
-/// `text` is the content of `source.file`; of other files only those of materials are opened. The first thing that is
-/// wrong is the error.
-pub fn read(text: &str, source: &Source) -> Result<Scene> {
-    read_with(text, source, &include::open)
-}
-
-/// Reads and checks a scene whose other files are come by with `load`, which all ranks call in the same order.
-///
-/// Overrides that may name a file act before it is read, all others after, on what it says.
-pub fn read_with(text: &str, source: &Source, load: Load) -> Result<Scene> {
-    let Source { file, overrides: typed } = source;
-    let mut table = parse(text, file)?;
-    let (files, others): (Vec<_>, Vec<_>) = typed.iter().cloned().partition(|typed| overrides::names_file(typed));
-    let blame = |error| overrides::blame(error, typed);
-    overrides::apply(&mut table, &files, file)?;
-    include::include(&mut table, file, load).map_err(blame)?;
-    overrides::apply(&mut table, &others, file)?;
-    from_table(&table, file).map_err(blame)
-}
-
-/// The TOML of a file, not yet looked into.
-pub fn parse(text: &str, file: &Path) -> Result<Table> {
-    text.parse::<Table>().map_err(|error| {
-        let start = error.span().map_or(0, |span| span.start);
-        let reason = match table_of_several(text, start) {
-            Some(name) => {
-                format!("each {name} must be written [[{name}]], in double brackets, where there are several")
-            }
-            None => error.message().replace('\n', "; "),
-        };
-        let before = text.get(..start).unwrap_or_default();
-        let line = before.matches('\n').count() + 1;
-        let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
-        Error::scene(file, "", format!("line {line}, column {column}: not TOML: {reason}"))
-    })
-}
-
-/// The name of a table that a scene can have several of, if the line of the byte at `start` begins one and another line
-/// does, too, in single brackets.
-fn table_of_several(text: &str, start: usize) -> Option<&'static str> {
-    let bare = |line: &str| line.split('#').next().unwrap_or_default().replace([' ', '\t', '\r'], "");
-    let here = bare(text.get(..start)?.rsplit('\n').next()?) + &bare(text.get(start..)?.split('\n').next()?);
-    ["phase", "material"].into_iter().find(|name| {
-        let (one, several) = (format!("[{name}]"), format!("[[{name}]]"));
-        let begin = text.lines().map(bare).filter(|line| *line == one || *line == several).count();
-        (here == one || here == several) && begin > 1
-    })
-}
-
-/// Reads and checks a scene whose TOML has been parsed, and perhaps changed by [`super::set`]. Materials that still
-/// are in files, because the table has not been through [`include::include`], are read from there.
-pub fn from_table(table: &Table, file: &Path) -> Result<Scene> {
-    let mut table = table.clone();
-    include::include(&mut table, file, &include::open)?;
-    let root = Section::root(file, &table, &tables::SCENE);
+/// Reads and checks a scene whose table holds all in full: what it takes from other files is there ([`super::include`]).
+pub fn scene(table: &Table, file: &Path) -> Result<Scene> {
+    let root = Section::root(file, table, &tables::SCENE);
     root.later(&[
         ("element", "give it in [layer] or [mesh]"),
         ("temperature", NO_TEMPERATURE),

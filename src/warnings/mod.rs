@@ -86,6 +86,7 @@ const AFTER: &[fn(&After<'_>) -> Option<Warning>] = &[
     outcome::no_contact,
     outcome::imbalance,
     outcome::penetration,
+    outcome::digits,
     outcome::few_nodes,
     outcome::between_nodes,
     outcome::stuck_slip,

@@ -2,7 +2,7 @@
 
 use super::{After, Warning, above, cells, phase};
 use crate::output::HistoryRow;
-use crate::scene::{Law, Motion};
+use crate::scene::{Law, Motion, Strategy};
 
 /// The imbalance of energies over the largest work.
 pub const MOST_IMBALANCE: f64 = 0.05;
@@ -18,6 +18,8 @@ pub const NODES_OF_A_TIP: f64 = 4.5;
 pub const MOST_STUCK_SLIP: f64 = 0.1;
 /// The oscillation of the tractions at the end of a phase.
 pub const MOST_OSCILLATION: f64 = 0.1;
+/// What round-off leaves of the approach over the penetration, where displacements are the unknowns.
+pub const MOST_LOST: f64 = 1e-6;
 
 impl After<'_> {
     fn largest(&self, value: impl Fn(&HistoryRow) -> f64) -> f64 {
@@ -76,6 +78,22 @@ pub fn penetration(after: &After<'_>) -> Option<Warning> {
         (deepest / (0.2 * MOST_PENETRATION * overlap)).ceil()
     );
     Some(Warning::new("contact.penalty", text))
+}
+
+/// Above [`MOST_LOST`] where the penetration is the deepest: a penalty makes forces of what displacements differ by.
+pub fn digits(after: &After<'_>) -> Option<Warning> {
+    let deepest = after.history.iter().max_by(|a, b| a.max_penetration.total_cmp(&b.max_penetration))?;
+    let lost = f64::EPSILON * deepest.approach.abs() / deepest.max_penetration;
+    let by_displacements = after.scene.solver.strategy == Strategy::Monolithic;
+    if !by_displacements || deepest.max_penetration <= 0.0 || !above(lost, MOST_LOST) {
+        return None;
+    }
+    let text = format!(
+        "monolithic has forces from displacements, and penetrations of {:.3e} m under an approach of {:.3e} m have no digits beyond \
+         {lost:.1e} (more than {MOST_LOST:e}); use \"condensed\", or a lower penalty",
+        deepest.max_penetration, deepest.approach
+    );
+    Some(Warning::new("solver.strategy", text))
 }
 
 /// N stays zero although the indenter overlaps the face.
@@ -239,6 +257,16 @@ mod tests {
         let sunk = |metre: f64| check(penetration, |_, row| row.max_penetration = metre);
         assert_eq!(sunk(5e-5), "");
         assert!(sunk(5.1e-5).contains("5.100e-5 m, 0.051 of its approach"), "{}", sunk(5.1e-5));
+        // Under an approach of 1 mm; with tractions as unknowns there is no such thing.
+        let shallow = |metre: f64, strategy| {
+            let mut scene = scene();
+            scene.solver.strategy = strategy;
+            let history = history(|i, row| row.max_penetration = if i < 4 { 0.0 } else { metre });
+            let after = After { scene: &scene, nodes: 100.0, touch: 0.0, history: &history };
+            digits(&after).map_or_else(String::new, |warning| warning.to_string())
+        };
+        assert_eq!((shallow(2.3e-13, Strategy::Monolithic), shallow(2e-13, Strategy::Auto)), Default::default());
+        assert!(shallow(2.2e-13, Strategy::Monolithic).contains("have no digits beyond 1.0e-6"));
         // A whole face of two nodes is as good as any.
         let touching = |share: f64| check(few_nodes, |i, row| row.contact_fraction = if i > 4 { share } else { 0.1 });
         assert_eq!((touching(0.03), touching(0.0)), (String::new(), String::new()));

@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 use super::super::origin;
 use crate::checksum::checksum;
 use crate::error::{Error, Result};
-use crate::output::{checkpoint, left, ours};
+use crate::output::scratch::scratch;
+use crate::output::{checkpoint, left};
 use crate::scene::differences;
 use crate::scene::sweep::Sweep;
 
@@ -163,7 +164,7 @@ impl Folder {
 
 /// Writes a file beside and renames it, so that readers see the old one or the new one.
 pub fn replace(path: &Path, text: &str) -> Result<()> {
-    let scratch = ours::scratch(path);
+    let scratch = scratch(path);
     let outcome = std::fs::write(&scratch, text).and_then(|()| std::fs::rename(&scratch, path));
     if outcome.is_err() {
         // The error at hand says more than one about a leftover.

@@ -2,7 +2,7 @@
 
 use nalgebra::{Complex, SMatrix, SVector};
 
-use super::{Operator, Pivot, Row, pivot};
+use super::{Operator, Pivot, Row, eliminated};
 use crate::error::Result;
 
 /// The block elimination of one wave vector.
@@ -14,21 +14,16 @@ pub struct Vibration<const D: usize> {
 impl<const D: usize> Vibration<D> {
     /// Of sum_p factor_p part_p at a wave vector.
     pub fn new(parts: &[Operator<D>], wave: usize, factors: &[Complex<f64>]) -> Result<Self> {
-        let rows = parts[0].rows;
-        let mut pivots = Vec::with_capacity(rows);
-        let mut below = SMatrix::zeros();
-        for j in (0..rows).rev() {
+        let row = |j: usize| {
             let mut row = Row { diagonal: SMatrix::zeros(), coupling: SMatrix::zeros() };
             for (part, &factor) in parts.iter().zip(factors) {
                 let Row { diagonal, coupling } = part.of(wave)[j];
                 row.diagonal += diagonal.map(|entry| factor * entry);
                 row.coupling += coupling.map(|entry| factor * entry);
             }
-            below = pivot(&row, &below)?;
-            pivots.push(Pivot { inverse: below, coupling: row.coupling });
-        }
-        pivots.reverse();
-        Ok(Self { pivots })
+            row
+        };
+        Ok(Self { pivots: eliminated(&(0..parts[0].rows).map(row).collect::<Vec<_>>(), wave)? })
     }
 
     /// P_0: the compliance of the face.
