@@ -3,6 +3,7 @@
 mod body;
 mod estimate;
 mod inputs;
+mod map;
 mod pressed;
 mod profile;
 mod steady;
@@ -41,7 +42,7 @@ pub use body::{Meshed, Outline, Stretch, outline};
 pub use estimate::Estimate;
 pub use inputs::inputs;
 pub use pressed::PressedEnd;
-pub use profile::{Finest, Shape, elevations, measured, numbers, reach, seam_doubt, shape};
+pub use profile::{Elevations, Finest, Shape, elevations, measured, reach, seam_doubt, shape};
 pub use steady::{last_velocity, steady};
 
 /// A scene made ready to run.

@@ -99,6 +99,13 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
+/// The HDF5 library's error in one line, without its stack: the system's words where it quotes them.
+pub(crate) fn plain(error: &hdf5::Error) -> String {
+    let text = error.to_string();
+    let quoted = text.split("error message = '").nth(1).and_then(|rest| rest.split('\'').next());
+    quoted.or_else(|| text.lines().next()).unwrap_or_default().to_owned()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

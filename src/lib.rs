@@ -15,7 +15,7 @@
 //! | [`interface`], [`bulk`] | points of the contact with their laws and states; forces of a body with memory |
 //! | [`energy`], [`snapshot`], [`loading`] | the balance; the state as lists; where the indenter is |
 //! | [`friction`], [`profile`], [`rheology`], [`element`], [`mesh`] | pure laws, numbers in and numbers out; cells |
-//! | [`expression`], [`table`], [`input`], [`checksum`] | formulas and files of numbers |
+//! | [`expression`], [`table`], [`heightmap`], [`input`], [`checksum`] | formulas and files of numbers |
 //! | [`oracle`] | closed forms and Fourier solutions that results are compared with |
 //! | [`petsc`], [`parallel`], [`memory`], [`error`] | thin safe wrappers, the only `unsafe` code; one outcome for all ranks |
 
@@ -31,6 +31,7 @@ pub mod energy;
 pub mod error;
 pub mod expression;
 pub mod friction;
+pub mod heightmap;
 pub mod input;
 pub mod interface;
 pub mod loading;

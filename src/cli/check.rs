@@ -34,11 +34,10 @@ pub fn run(arguments: &CheckArguments) -> Result<()> {
     let source = Source { file: file.clone(), overrides: arguments.set.clone() };
     let scene = scene::read(&scene::open(file)?, &source)?;
     let measured = composition::measured(&scene, file)?;
-    let elevations = measured.as_ref().map_or_else(Vec::new, composition::numbers);
     let outline = composition::outline(&scene, file)?;
-    let shape = composition::shape(&scene, file, &elevations, &outline)?;
+    let shape = composition::shape(&scene, file, &measured.numbers, &outline)?;
     tell(scene.to_toml().trim_end());
-    tell(format_args!("\n{}", commented(&profile::describe(&scene, measured.as_ref(), &shape, outline.face))));
+    tell(format_args!("\n{}", commented(&profile::describe(&scene, measured.note.as_deref(), &shape, &outline))));
     tell(commented(&summary::plan(&scene, &outline)));
     let warnings = Doubts::of(&scene, &outline, &shape).before;
     warnings.iter().for_each(doubt);

@@ -2,14 +2,15 @@
 
 use std::fmt::Write;
 
-use crate::composition::{Finest, Shape, Stretch};
-use crate::profile::profilometer::Measured;
+use crate::composition::{Finest, Outline, Shape};
+use crate::profile::Relief;
 use crate::scene::{Indenter, Scene};
 
 /// A few lines about the profile over the face, with a sketch.
-pub fn describe(scene: &Scene, measured: Option<&Measured>, shape: &Shape, face: Stretch) -> String {
+pub fn describe(scene: &Scene, note: Option<&str>, shape: &Shape, outline: &Outline) -> String {
     const COLUMNS: usize = 64;
     const ROWS: usize = 4;
+    let face = outline.face;
     let survey = &shape.survey;
     let [low, high] = survey.range();
     let mut text = String::new();
@@ -18,8 +19,11 @@ pub fn describe(scene: &Scene, measured: Option<&Measured>, shape: &Shape, face:
     if let Some(detail) = &shape.detail {
         let _ = write!(text, ": {detail}");
     }
-    if let Some(measured) = measured {
-        let _ = write!(text, "\n               the file is {}", measured.note());
+    if let Some(note) = note {
+        let _ = write!(text, "\n               the file is {note}");
+    }
+    if let (Indenter::Map { .. }, Some(across)) = (&scene.indenter, outline.across) {
+        text += &over_the_face(shape, [[face.from, face.to], [across.from, across.to]]);
     }
     let _ = write!(
         text,
@@ -47,6 +51,24 @@ pub fn describe(scene: &Scene, measured: Option<&Measured>, shape: &Shape, face:
     text
 }
 
+/// A map seen from above, and the section that is drawn after it.
+fn over_the_face(shape: &Shape, stretches: [[f64; 2]; 2]) -> String {
+    const SIZE: [usize; 2] = [64, 16];
+    // Where it is not known it was refused.
+    let Ok(relief) = Relief::new(&*shape.surface, stretches, SIZE) else { return String::new() };
+    let [x, y] = stretches;
+    let [low, high] = relief.range();
+    let mut text = format!(
+        "\n               seen from above, x = {:?} to {:?} m to the right, y = {:?} to {:?} m upward; h from {low:.3e} m\n               \
+         (#, where it touches first) to {high:.3e} m (blank):",
+        x[0], x[1], y[0], y[1]
+    );
+    for line in relief.drawing() {
+        text += &format!("\n               |{line}|");
+    }
+    text + "\n               along x, where it is lowest:"
+}
+
 fn name(indenter: &Indenter) -> String {
     match indenter {
         Indenter::Harmonic { .. } => "harmonic".to_owned(),
@@ -60,5 +82,6 @@ fn name(indenter: &Indenter) -> String {
         Indenter::Sphere { .. } => "sphere".to_owned(),
         Indenter::Cone { .. } => "cone".to_owned(),
         Indenter::Waves { .. } => "waves".to_owned(),
+        Indenter::Map { file, .. } => format!("map {file:?}"),
     }
 }

@@ -18,7 +18,7 @@ pub fn inputs(scene: &Scene, file: &Path) -> Result<String> {
     if let Body::Mesh(mesh) = &scene.body {
         add("mesh.file", &body::bytes(mesh)?);
     }
-    if let Indenter::Sampled { file: name, .. } = &scene.indenter {
+    if let Indenter::Sampled { file: name, .. } | Indenter::Map { file: name, .. } = &scene.indenter {
         add("indenter.file", &profile::bytes(name, file)?);
     }
     Ok(text)

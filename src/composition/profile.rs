@@ -1,10 +1,10 @@
 //! The indenter's profile: the file it is in, what the face will ask of it, and what it looks like.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use super::pressed::{PressedEnd, pressed_end};
-use super::{Outline, Stretch, course, surface};
+use super::{Outline, Stretch, course, map, surface};
 use crate::error::{Error, Result};
 use crate::expression::Expression;
 use crate::input;
@@ -45,13 +45,32 @@ pub enum Finest {
     Spacing(f64),
 }
 
-/// The measured points that the profile of the scene in `file` needs, made h as the scene says; none for a profile that
-/// has no file.
+/// What the file of a measured profile has.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Elevations {
+    /// Of points x, h of each, m; of a map what [`crate::heightmap::Heights::into_numbers`] gives; of a profile without a file
+    /// nothing.
+    pub numbers: Vec<f64>,
+    /// What a reader of the scene cannot see of it.
+    pub note: Option<String>,
+}
+
+/// What the profile of the scene in `file` needs of its own file, made h as the scene says.
 ///
 /// # Errors
 /// [`Error::File`] when it cannot be read, [`Error::Scene`] with its line when its content is wrong.
-pub fn measured(scene: &Scene, file: &Path) -> Result<Option<Measured>> {
-    let Indenter::Sampled { file: name, reading, .. } = &scene.indenter else { return Ok(None) };
+pub fn measured(scene: &Scene, file: &Path) -> Result<Elevations> {
+    match &scene.indenter {
+        Indenter::Sampled { file: name, reading, .. } => {
+            let measured = points((name, reading), file)?;
+            Ok(Elevations { note: Some(measured.note()), numbers: numbers(&measured) })
+        }
+        Indenter::Map { .. } => map::measured(scene, file),
+        _ => Ok(Elevations::default()),
+    }
+}
+
+fn points((name, reading): (&str, &Reading), file: &Path) -> Result<Measured> {
     let unit = |name: Option<&str>| name.and_then(Unit::parse);
     let layout = Layout { columns: reading.columns.clone(), units: [unit(reading.x_unit), unit(reading.z_unit)] };
     let mut measured = profilometer::read(&bytes(name, file)?, &layout)
@@ -62,34 +81,43 @@ pub fn measured(scene: &Scene, file: &Path) -> Result<Option<Measured>> {
     match reading.detrend {
         Detrend::None => {}
         Detrend::Mean => measured.take_off_mean(),
-        Detrend::Line => measured.take_off_line(),
+        Detrend::Line | Detrend::Plane => measured.take_off_line(),
     }
     measured.shift(reading.offset);
-    Ok(Some(measured))
+    Ok(measured)
 }
 
-/// The [`measured`] points as numbers: x, h of each, m.
+/// The numbers of [`measured`].
 ///
 /// # Errors
 /// Those of [`measured`].
 pub fn elevations(scene: &Scene, file: &Path) -> Result<Vec<f64>> {
-    Ok(measured(scene, file)?.as_ref().map_or_else(Vec::new, numbers))
+    Ok(measured(scene, file)?.numbers)
 }
 
 /// x, h of each point, m.
-pub fn numbers(measured: &Measured) -> Vec<f64> {
+fn numbers(measured: &Measured) -> Vec<f64> {
     measured.points.iter().flat_map(|point| [point.x, point.height]).collect()
 }
 
 /// The content of the file `name` of elevations, beside the scene in `file`.
 pub(super) fn bytes(name: &str, file: &Path) -> Result<Vec<u8>> {
-    let path = file.parent().unwrap_or(Path::new("")).join(name);
-    input::bytes(&path).map_err(|error| match error {
+    input::bytes(&beside(name, file)).map_err(|error| of_the_indenter(error, file))
+}
+
+/// The path of the file `name` of the scene in `file`.
+pub(super) fn beside(name: &str, file: &Path) -> PathBuf {
+    file.parent().unwrap_or(Path::new("")).join(name)
+}
+
+/// An error of the indenter's file, which says whose it is.
+pub(super) fn of_the_indenter(error: Error, file: &Path) -> Error {
+    match error {
         Error::File { file: path, reason } => {
             Error::File { file: path, reason: format!("{reason}; it is indenter.file of {}", file.display()) }
         }
         other => other,
-    })
+    }
 }
 
 /// The profile of the scene in `file` over the contact face of its body, with the [`elevations`] it needs. Under periodic sides
@@ -101,7 +129,7 @@ pub(super) fn bytes(name: &str, file: &Path) -> Result<Vec<u8>> {
 pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], outline: &Outline) -> Result<Shape> {
     let face = outline.face;
     if let Some(across) = outline.across
-        && let Some(shape) = surface::shape((scene, file), [face, across], outline)?
+        && let Some(shape) = surface::shape((scene, file), elevations, [face, across], outline)?
     {
         return Ok(shape);
     }
@@ -119,7 +147,11 @@ pub fn shape(scene: &Scene, file: &Path, elevations: &[f64], outline: &Outline) 
         Indenter::Parabola { radius, centre } => repeat(Box::new(Parabola { radius, centre }), centre),
         Indenter::Circle { radius, centre } => repeat(Box::new(Circle { radius, centre }), centre),
         Indenter::Wedge { slope, centre } => repeat(Box::new(Wedge { slope, centre }), centre),
-        Indenter::Paraboloid { .. } | Indenter::Sphere { .. } | Indenter::Cone { .. } | Indenter::Waves { .. } => {
+        Indenter::Paraboloid { .. }
+        | Indenter::Sphere { .. }
+        | Indenter::Cone { .. }
+        | Indenter::Waves { .. }
+        | Indenter::Map { .. } => {
             return Err(wrong("profile", "is for scenes in space".to_owned()));
         }
         Indenter::Expression { ref formula } => {
@@ -167,12 +199,16 @@ pub(super) fn survey(profile: &dyn Profile, face: Stretch) -> Result<Survey> {
 /// The stretch of the profile, m, that the face meets over the whole history; under periodic sides one period is all
 /// there is.
 pub fn reach(scene: &Scene, face: Stretch) -> [f64; 2] {
+    reach_along(0, scene, face)
+}
+
+/// As [`reach`], along an axis.
+pub(super) fn reach_along(axis: usize, scene: &Scene, face: Stretch) -> [f64; 2] {
     if face.periodic {
         return [face.from, face.to];
     }
-    let ranges = course(scene).iter().map(|phase| phase.sliding_range(0)).collect::<Vec<_>>();
-    let least = ranges.iter().map(|range| range[0]).fold(0.0, f64::min);
-    let greatest = ranges.iter().map(|range| range[1]).fold(0.0, f64::max);
+    let ranges = course(scene).into_iter().map(|phase| phase.sliding_range(axis));
+    let [least, greatest] = ranges.fold([0.0_f64; 2], |[a, b], [c, d]| [a.min(c), b.max(d)]);
     [face.from - greatest, face.to - least]
 }
 
@@ -222,8 +258,12 @@ pub fn seam_doubt(scene: &Scene, elevations: &[f64]) -> Option<(&'static str, St
 }
 
 /// The unit that a file read as m looks like: one in which `span` is some `face` widths, not thousands of them.
-fn looks_like(scene: &Scene, span: f64, face: Stretch) -> Option<String> {
-    let Indenter::Sampled { reading: Reading { x_unit: None, .. }, .. } = &scene.indenter else { return None };
+pub(super) fn looks_like(scene: &Scene, span: f64, face: Stretch) -> Option<String> {
+    let (Indenter::Sampled { reading: Reading { x_unit: None, .. }, .. }
+    | Indenter::Map { reading: Reading { x_unit: None, .. }, spacing: None, .. }) = &scene.indenter
+    else {
+        return None;
+    };
     let ratio = span / face.width();
     let unit = ["mm", "um", "nm"].into_iter().filter_map(Unit::parse).find(|unit| unit.to_si(ratio) <= 100.0)?;
     let name = unit.name;

@@ -7,8 +7,8 @@ use std::rc::Rc;
 use nalgebra::Vector2;
 
 use super::pressed::pressed_end;
-use super::profile::{Finest, Shape, survey};
-use super::{Outline, Stretch, course};
+use super::profile::{Finest, Shape, reach_along, survey};
+use super::{Outline, Stretch, map};
 use crate::error::{Error, Result};
 use crate::expression::Expression;
 use crate::profile::{
@@ -22,14 +22,19 @@ use crate::scene::{Indenter, Scene};
 ///
 /// # Errors
 /// [`Error::Scene`] where a formula is none, or not finite over the face, or has a jump where it repeats.
-pub(super) fn shape((scene, file): (&Scene, &Path), face: [Stretch; 2], outline: &Outline) -> Result<Option<Shape>> {
+pub(super) fn shape(
+    (scene, file): (&Scene, &Path),
+    elevations: &[f64],
+    face: [Stretch; 2],
+    outline: &Outline,
+) -> Result<Option<Shape>> {
     let periods = face.map(|along| along.periodic.then_some(along.width()));
     let middle = Vector2::from(face.map(|along| 0.5 * (along.from + along.to)));
     let wrong = |key: &str, reason: String| Error::scene(file, format!("indenter.{key}"), reason);
     let repeated = |surface: Box<dyn Surface>, centre| -> Rc<dyn Surface> {
         Rc::new(RepeatedSurface { surface, centre, periods })
     };
-    let (mut finest, mut detail) = (None, None);
+    let (mut finest, mut detail, mut unit, mut seam) = (None, None, None, None);
     let surface = match scene.indenter {
         Indenter::Paraboloid { radius, centre } => repeated(Box::new(Paraboloid { radii: radius, centre }), centre),
         Indenter::Sphere { radius, centre } => repeated(Box::new(Sphere { radius, centre }), centre),
@@ -52,13 +57,17 @@ pub(super) fn shape((scene, file): (&Scene, &Path), face: [Stretch; 2], outline:
             detail = Some(format!("{waves} waves, repeating after {period:?} m along x and along y"));
             Rc::new(RoughSurface::new(roughness, period))
         }
+        Indenter::Map { .. } => {
+            let map = map::surface((scene, file), elevations, face)?;
+            (finest, detail, unit, seam) = (Some(map.finest), Some(map.detail), map.unit, map.seam);
+            Rc::new(map.surface)
+        }
         _ => return Ok(None),
     };
     let pressed = pressed_end(&*surface, (scene, file), outline)?;
     let lowest = lowest(&*surface, face).map_err(|error| wrong("profile", error.to_string()))?;
     let profile: Rc<dyn Profile> = Rc::new(Section { surface: surface.clone(), y: lowest.y });
     let survey = survey(&profile, face[0]).map_err(|error| wrong("profile", error.to_string()))?;
-    let (unit, seam) = (None, None);
     Ok(Some(Shape { surface, profile, finest, detail, unit, seam, survey, pressed }))
 }
 
@@ -108,10 +117,8 @@ fn lowest(surface: &dyn Surface, face: [Stretch; 2]) -> Result<Vector2<f64>> {
 fn check(surface: &SurfaceFormula, scene: &Scene, face: [Stretch; 2]) -> std::result::Result<(), String> {
     const ALIKE: f64 = 1e-6;
     let mut reached = face;
-    for (axis, along) in reached.iter_mut().enumerate().filter(|(_, along)| !along.periodic) {
-        let ranges = course(scene).into_iter().map(|phase| phase.sliding_range(axis));
-        let [least, greatest] = ranges.fold([0.0_f64; 2], |[a, b], [c, d]| [a.min(c), b.max(d)]);
-        (along.from, along.to) = (along.from - greatest, along.to - least);
+    for (axis, along) in reached.iter_mut().enumerate() {
+        [along.from, along.to] = reach_along(axis, scene, *along);
     }
     let at = |place| surface.at(place).map(|height| height.height).map_err(|error| error.to_string());
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);

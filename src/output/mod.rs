@@ -179,10 +179,3 @@ pub struct BulkPlan {
     /// The nodes of each cell, from 0, cell after cell; those of a quadrilateral counter-clockwise.
     pub cells: Vec<i64>,
 }
-
-/// The HDF5 library's error in one line, without its stack: the system's words where it quotes them.
-fn plain(error: &hdf5::Error) -> String {
-    let text = error.to_string();
-    let quoted = text.split("error message = '").nth(1).and_then(|rest| rest.split('\'').next());
-    quoted.or_else(|| text.lines().next()).unwrap_or_default().to_owned()
-}

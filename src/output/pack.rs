@@ -21,7 +21,7 @@ use super::skeleton::{self, Purpose};
 use super::state::State;
 use super::store::{Rows as Stored, Table};
 use super::{BulkPlan, Plan};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, plain};
 
 /// Bytes per second that are compressed at the least: 50 to 110 MB/s were measured on one core (docs/results.md).
 const RATE: f64 = 40e6;
@@ -63,7 +63,7 @@ fn pack_into(state: &State, scratch: &Path) -> Result<()> {
     let path = state.store.path();
     let results = Results::open(path)?;
     let plan = plan(state, &results)?;
-    let broken = |error: hdf5::Error| Error::file(path, super::plain(&error));
+    let broken = |error: hdf5::Error| Error::file(path, plain(&error));
     let from = hdf5::File::open(path).map_err(broken)?;
     skeleton::write(scratch, &|to| copy_attributes(&from, to), &plan, Purpose::Packed).map_err(broken)?;
     let to = hdf5::File::open_rw(scratch).map_err(broken)?;

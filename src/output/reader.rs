@@ -6,7 +6,7 @@ use hdf5::types::VarLenUnicode;
 
 use super::columns::{self, BULK, Value};
 use super::{Extra, HistoryRow};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, plain};
 use crate::input;
 
 /// A result file open for reading.
@@ -45,9 +45,8 @@ impl Results {
         // The system's words on a file that is missing or may not be read are plainer than the library's.
         input::regular(path)?;
         std::fs::File::open(path).map_err(|error| Error::file(path, error))?;
-        let file = hdf5::File::open(path).map_err(|error| {
-            Error::file(path, format!("is not an HDF5 file that can be read ({})", super::plain(&error)))
-        })?;
+        let file = hdf5::File::open(path)
+            .map_err(|error| Error::file(path, format!("is not an HDF5 file that can be read ({})", plain(&error))))?;
         if file.attr("mpjr_version").is_err() {
             return Err(Error::file(path, "is an HDF5 file, but not one that mpjr wrote"));
         }
@@ -193,6 +192,6 @@ impl Results {
     }
 
     fn missing(&self, what: &str, error: &hdf5::Error) -> Error {
-        Error::file(&self.path, format!("has no {what} that can be read ({})", super::plain(error)))
+        Error::file(&self.path, format!("has no {what} that can be read ({})", plain(error)))
     }
 }

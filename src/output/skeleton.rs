@@ -13,7 +13,7 @@ use hdf5::{Dataset, H5Type, Location};
 use super::columns::{self, BULK, Components, Value};
 use super::xdmf::MeshSize;
 use super::{BulkPlan, Metadata, Plan, Status};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, plain};
 
 /// The metadata of a file stands in one block of this size, so that one small write reaches all extents.
 const METADATA_BLOCK: u64 = 1 << 18;
@@ -58,7 +58,7 @@ pub(super) struct Skeleton<'a> {
 pub(super) fn create(path: &Path, metadata: &Metadata, plan: &Plan) -> Result<()> {
     // A killed run is one that was stopped. The end of a run points `status` at another of `status_values`.
     write(path, &|file| root_attributes(file, metadata, (Status::Stopped, 0.0)), plan, Purpose::Growing)
-        .map_err(|error| Error::file(path, format!("cannot be created: {}", super::plain(&error))))
+        .map_err(|error| Error::file(path, format!("cannot be created: {}", plain(&error))))
 }
 
 /// The same with what `root` gives the root, for `purpose`.

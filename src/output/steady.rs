@@ -6,7 +6,7 @@ use std::time::SystemTime;
 use super::scratch::scratch;
 use super::skeleton::{Purpose, Skeleton, root_attributes};
 use super::{Metadata, Status, ours};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, plain};
 
 /// The steady state at a velocity.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,7 +79,7 @@ pub fn write(path: &Path, metadata: &Metadata, curve: &Curve<'_>) -> Result<()> 
     // The system's words on a directory that cannot be written are plainer than the library's.
     std::fs::File::create_new(&scratch).map_err(|error| cannot(&error))?;
     let done = fill(&scratch, metadata, curve)
-        .map_err(|error| cannot(&super::plain(&error)))
+        .map_err(|error| cannot(&plain(&error)))
         .and_then(|()| std::fs::rename(&scratch, path).map_err(|error| cannot(&error)));
     if done.is_err() {
         // The error at hand says more than one about a leftover.

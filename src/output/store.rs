@@ -9,7 +9,7 @@ use super::columns::{self, BULK};
 use super::scratch::scratch;
 use super::{Plan, Status, locate, skeleton};
 use crate::checksum::row_sum;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, plain};
 use crate::petsc::object_address::object_address;
 
 /// A dataset that grows by rows, and where the library put it.
@@ -97,18 +97,16 @@ impl Store {
     }
 
     fn find(path: &Path, tables: &[Vec<String>]) -> Result<Self> {
-        let library = hdf5::File::open(path).map_err(|error| Error::file(path, super::plain(&error)))?;
-        let root = object_address(&library).map_err(|error| Error::file(path, super::plain(&error)))?;
+        let library = hdf5::File::open(path).map_err(|error| Error::file(path, plain(&error)))?;
+        let root = object_address(&library).map_err(|error| Error::file(path, plain(&error)))?;
         let raw = File::open(path).map_err(|error| Error::file(path, error))?;
         let mut found = [const { (Vec::new(), 0) }; 3];
         for (table, names) in found.iter_mut().zip(tables) {
             for name in names {
-                table
-                    .0
-                    .push(Series::find(&library, &raw, name).map_err(|error| Error::file(path, super::plain(&error)))?);
+                table.0.push(Series::find(&library, &raw, name).map_err(|error| Error::file(path, plain(&error)))?);
             }
         }
-        library.close().map_err(|error| Error::file(path, super::plain(&error)))?;
+        library.close().map_err(|error| Error::file(path, plain(&error)))?;
         Self::from_raw(path, &raw, found, root).map_err(|error| Error::file(path, error))
     }
 
@@ -343,7 +341,7 @@ impl Store {
             change(&file)?;
             file.close()
         };
-        work().map_err(|error| Error::file(&self.path, format!("cannot {what}: {}", super::plain(&error))))?;
+        work().map_err(|error| Error::file(&self.path, format!("cannot {what}: {}", plain(&error))))?;
 
         let names = self.tables.iter().map(|(series, _)| series.iter().map(|s| s.name.clone()).collect());
         let mut changed = Self::find(scratch, &names.collect::<Vec<_>>())?;

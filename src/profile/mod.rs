@@ -1,7 +1,9 @@
 //! Rigid profiles: the elevation h(x) of the indenter's lower surface above its datum, and its slope.
 
 mod expression;
+pub mod map;
 pub mod profilometer;
+mod relief;
 mod rough;
 mod rough_surface;
 mod sampled;
@@ -15,6 +17,8 @@ use std::rc::Rc;
 use crate::error::Result;
 
 pub use expression::Formula;
+pub use map::HeightMap;
+pub use relief::Relief;
 pub use rough::{Rms, Rough, Roughness};
 pub use rough_surface::RoughSurface;
 pub use sampled::{BLEND, Point, Sampled, WALL};

@@ -1,7 +1,7 @@
 //! A profilometer's file: x and elevation out of a table, and what is done to measured elevations.
 
 use super::sampled::Point;
-use crate::table::{Choice, Quantity, Table, Unit};
+use crate::table::{Choice, Table, Unit};
 
 /// What is to be known to read a file.
 #[derive(Debug, Clone, Default)]
@@ -42,7 +42,7 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Measured, String> {
             ));
         }
     };
-    let [x, z] = [unit(&table, columns[0], layout.units[0])?, unit(&table, columns[1], layout.units[1])?];
+    let [x, z] = [table.length(columns[0], layout.units[0])?, table.length(columns[1], layout.units[1])?];
     let mut rows = table.columns(&columns).map_err(|fault| fault.to_string())?;
     let sorted = rows.sort();
     // A point that is there twice says nothing new; two elevations of one place say different things.
@@ -57,20 +57,6 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Measured, String> {
         0 => Err("has no points; give lines of x and elevation".to_owned()),
         1 => Err("has a single point; give at least two".to_owned()),
         _ => Ok(Measured { points, skipped: rows.skipped, sorted, units: [x, z] }),
-    }
-}
-
-/// The unit of a column: what is said must be what the file says.
-fn unit(table: &Table, column: usize, said: Option<Unit>) -> Result<Unit, String> {
-    match (table.unit(column), said) {
-        (Some(unit), _) if unit.quantity != Quantity::Length => {
-            Err(format!("column {} is in {}, which is no length; choose others by columns", column + 1, unit.name))
-        }
-        (Some(unit), Some(said)) if unit != said => {
-            Err(format!("column {} is in {} by its title, but the scene says {}", column + 1, unit.name, said.name))
-        }
-        (Some(unit), _) => Ok(unit),
-        (None, said) => Ok(said.unwrap_or(Unit::METRE)),
     }
 }
 
@@ -148,7 +134,7 @@ mod tests {
             ("0 1\n2\n", "line 2: 1 column, but most lines have 2"),
             ("0 1\n1 1e999\n", "line 2: `1e999` is not a finite number"),
             ("0 1 2\n1 2 3\n", "has 3 columns; say which are x and elevation, such as columns = [1, 2]"),
-            ("t (s),z (um)\n0,1\n1,2\n", "column 1 is in s, which is no length; choose others by columns"),
+            ("t (s),z (um)\n0,1\n1,2\n", "column 1 is in s, which is no length; give columns of lengths"),
         ] {
             assert_eq!(read(text.as_bytes(), &Layout::default()).unwrap_err(), message, "{text:?}");
         }

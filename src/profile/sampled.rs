@@ -82,12 +82,8 @@ impl Sampled {
     pub fn blend(points: &mut [Point], period: f64) {
         let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else { return };
         let (jump, length) = (first.height - last.height, BLEND * period);
-        let ramp = |distance: f64| {
-            let s = (1.0 - distance / length).max(0.0);
-            0.5 * jump * s * s * (3.0 - 2.0 * s)
-        };
         for point in &mut *points {
-            point.height += ramp(last.x - point.x) - ramp(point.x - first.x);
+            point.height += jump * (ramp(last.x - point.x, length) - ramp(point.x - first.x, length));
         }
         // Not even by round-off apart.
         let end = points[0].height;
@@ -120,6 +116,12 @@ impl Sampled {
             (left, right) => left.or(right).unwrap_or(0.0),
         }
     }
+}
+
+/// The share of the jump that is taken off so far from an end, over a length: (3 s^2 - 2 s^3)/2, s from 0 inside to 1 at the end.
+pub(super) fn ramp(distance: f64, length: f64) -> f64 {
+    let s = (1.0 - distance / length).max(0.0);
+    0.5 * s * s * (3.0 - 2.0 * s)
 }
 
 impl Profile for Sampled {

@@ -124,8 +124,9 @@ fn size(layer: &Layer, strategy: Strategy) -> Check {
 }
 
 /// Under periodic sides the profile has the period of the layer. The harmonic, sampled and rough profiles must have it
-/// by themselves (the sampled one as far as the scene says its period); any other is taken from its nearest image.
+/// by themselves (the sampled one as far as the scene says its period; that of a map is looked at with its file); any other is taken from its nearest image.
 fn period(layer: &Layer, indenter: &Indenter) -> Check {
+    const REPEATS: &str = "must be \"periodic\" under periodic sides, got \"error\"";
     let Span { width, sides, .. } = layer.spans[0];
     if let (Indenter::Waves { wavelength, .. }, Some(across)) = (indenter, layer.spans.get(1)) {
         for (span, wavelength) in [&layer.spans[0], across].into_iter().zip(wavelength.iter()) {
@@ -139,14 +140,17 @@ fn period(layer: &Layer, indenter: &Indenter) -> Check {
     {
         whole_periods(across.width, "periods of the profile", *period).or_else(|reason| fail("layer.width", reason))?;
     }
+    if let Indenter::Map { extend: Extend::Error, .. } = indenter
+        && layer.spans.iter().any(|span| span.sides == Sides::Periodic)
+    {
+        return fail("indenter.extend", REPEATS);
+    }
     let (what, period) = match *indenter {
         _ if sides != Sides::Periodic => return Ok(()),
         Indenter::Harmonic { wavelength, .. } => ("wavelengths", wavelength),
         Indenter::Rough { period, .. } => ("periods of the profile", period),
         Indenter::Sampled { period: Some(period), .. } => ("periods of the profile", period),
-        Indenter::Sampled { extend: Extend::Error, .. } => {
-            return fail("indenter.extend", "must be \"periodic\" under periodic sides, got \"error\"");
-        }
+        Indenter::Sampled { extend: Extend::Error, .. } => return fail("indenter.extend", REPEATS),
         _ => return Ok(()),
     };
     whole_periods(width, what, period).or_else(|reason| fail("layer.width", reason))

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use serde::Serialize;
 
-use super::resolved::{one_or_both, pair};
+use super::resolved::{one_or_both, optional_one_or_both, optional_pair, pair};
 
 use crate::table::Choice;
 
@@ -91,6 +91,28 @@ pub enum Indenter {
         #[serde(skip_serializing_if = "Option::is_none")]
         period: Option<f64>,
     },
+    /// In space: h = the heights of a file over a grid, bilinear between them. Not opened here.
+    Map {
+        /// As typed: relative to the directory of the scene file, unless absolute. Its ending is a known one.
+        file: String,
+        /// Of an HDF5 file, the path of the dataset in it.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        dataset: Option<String>,
+        /// From point to point along x and y, m, > 0; just where the file does not say it.
+        #[serde(serialize_with = "optional_one_or_both", skip_serializing_if = "Option::is_none")]
+        spacing: Option<Vector2<f64>>,
+        /// Where its first point is, m; none = what the file says, else 0.
+        #[serde(serialize_with = "optional_pair", skip_serializing_if = "Option::is_none")]
+        origin: Option<Vector2<f64>>,
+        /// What is done to the heights; it has no columns.
+        #[serde(flatten)]
+        reading: Reading,
+        /// What is beyond the edges.
+        extend: Extend,
+        /// m, > 0, only with [`Extend::Periodic`]; none = those that the points have by themselves.
+        #[serde(serialize_with = "optional_one_or_both", skip_serializing_if = "Option::is_none")]
+        period: Option<Vector2<f64>>,
+    },
     /// Self-affine: random phases, amplitudes ~ n^-(hurst + 1/2).
     Rough {
         /// In (0, 1].
@@ -112,7 +134,10 @@ pub enum Indenter {
 impl Indenter {
     /// Whether it is for scenes in space alone.
     pub fn needs_space(&self) -> bool {
-        matches!(self, Self::Paraboloid { .. } | Self::Sphere { .. } | Self::Cone { .. } | Self::Waves { .. })
+        matches!(
+            self,
+            Self::Paraboloid { .. } | Self::Sphere { .. } | Self::Cone { .. } | Self::Waves { .. } | Self::Map { .. }
+        )
     }
 }
 
@@ -149,6 +174,8 @@ pub enum Detrend {
     Mean,
     /// The straight line of least squares through the points.
     Line,
+    /// Of a map, the plane of least squares.
+    Plane,
 }
 
 /// How the ends of a period meet.
@@ -162,7 +189,7 @@ pub enum Seam {
     Blend,
 }
 
-/// What a sampled profile is beyond its ends.
+/// What a measured profile is beyond its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Extend {

@@ -187,6 +187,25 @@ pub(super) fn one_or_both<S: Serializer>(vector: &Vector2<f64>, serializer: S) -
     }
 }
 
+/// As [`pair`], where there is one.
+pub(super) fn optional_pair<S: Serializer>(vector: &Option<Vector2<f64>>, serializer: S) -> Result<S::Ok, S::Error> {
+    match vector {
+        Some(vector) => pair(vector, serializer),
+        None => serializer.serialize_none(),
+    }
+}
+
+/// As [`one_or_both`], where there is one.
+pub(super) fn optional_one_or_both<S: Serializer>(
+    vector: &Option<Vector2<f64>>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    match vector {
+        Some(vector) => one_or_both(vector, serializer),
+        None => serializer.serialize_none(),
+    }
+}
+
 /// What is along x alone as a number, else both components.
 pub(super) fn number_or_pair<S: Serializer>(vector: &Vector2<f64>, serializer: S) -> Result<S::Ok, S::Error> {
     match vector.y {

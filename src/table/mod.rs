@@ -148,6 +148,23 @@ impl Table {
         self.titles.get(column).and_then(|title| title.unit)
     }
 
+    /// The unit of a column of lengths, counted from 0: what is said must be what the file says; m where neither says one.
+    ///
+    /// # Errors
+    /// That they differ, or that it holds no lengths.
+    pub fn length(&self, column: usize, said: Option<Unit>) -> Result<Unit, String> {
+        match (self.unit(column), said) {
+            (Some(unit), _) if unit.quantity != Quantity::Length => {
+                Err(format!("column {} is in {}, which is no length; give columns of lengths", column + 1, unit.name))
+            }
+            (Some(unit), Some(said)) if unit != said => {
+                Err(format!("column {} is in {} by its title, but the scene says {}", column + 1, unit.name, said.name))
+            }
+            (Some(unit), _) => Ok(unit),
+            (None, said) => Ok(said.unwrap_or(Unit::METRE)),
+        }
+    }
+
     /// The column, counted from 0, that is chosen.
     ///
     /// # Errors
@@ -184,32 +201,70 @@ impl Table {
         Ok(picked)
     }
 
+    /// The numbers of all lines, one line after the other; not a number where a point has no value.
+    ///
+    /// # Errors
+    /// The first line that has something else there.
+    pub fn matrix(&self) -> Result<Vec<f64>, Fault> {
+        let mut values = Vec::with_capacity(self.lines.len() * self.width());
+        for (line, range) in &self.lines {
+            let fault = |reason| Fault { line: *line, reason };
+            let Some((fields, cells)) = self.line(format::content(&self.text[range.clone()])).map_err(fault)? else {
+                continue;
+            };
+            if cells.len() != self.width() {
+                return Err(fault(format::other_width(cells.len(), self.width())));
+            }
+            for (cell, field) in cells.iter().zip(fields) {
+                values.push(value(*cell, field).map_err(fault)?.unwrap_or(f64::NAN));
+            }
+        }
+        Ok(values)
+    }
+
     fn row(&self, content: &str, columns: &[usize]) -> Result<Found, String> {
-        let fields = self.shape.format.fields(content);
-        let cells: Vec<Cell> = fields.iter().map(|field| self.shape.format.cell(field)).collect();
-        if !cells.iter().any(|cell| matches!(cell, Cell::Number(_))) {
-            // Titles between two blocks of numbers, words after the last one, empty lines; or a point without any value.
-            let point = cells.len() == self.width() && !cells.contains(&Cell::Word);
-            return Ok(if point { Found::Nothing } else { Found::Words });
-        }
-        if !self.shape.words && cells.iter().skip(self.width()).any(|cell| *cell != Cell::Missing) {
-            return Err(format::other_width(cells.len(), self.width()));
-        }
+        let Some((fields, cells)) = self.line(content)? else { return Ok(Found::Words) };
         let mut values = Vec::with_capacity(columns.len());
         for &column in columns {
             let (Some(cell), Some(field)) = (cells.get(column), fields.get(column)) else {
                 return Err(format::other_width(cells.len(), self.width()));
             };
-            match *cell {
-                Cell::Number(value) if value.is_finite() => values.push(value),
-                Cell::Number(_) => return Err(format!("{} is not a finite number", quoted(field))),
-                Cell::Word => return Err(format!("{} is not a number", quoted(field))),
-                Cell::Missing => return Ok(Found::Nothing),
+            match value(*cell, field)? {
+                Some(value) => values.push(value),
+                None => return Ok(Found::Nothing),
             }
         }
         Ok(Found::Values(values))
     }
+
+    /// The fields of a line of numbers, and what is in each; none of one that has but words.
+    fn line<'a>(&self, content: &'a str) -> Result<Option<Line<'a>>, String> {
+        let fields = self.shape.format.fields(content);
+        let cells: Vec<Cell> = fields.iter().map(|field| self.shape.format.cell(field)).collect();
+        if !cells.iter().any(|cell| matches!(cell, Cell::Number(_))) {
+            // Titles between two blocks of numbers, words after the last one, empty lines; or a point without any value.
+            let point = cells.len() == self.width() && !cells.contains(&Cell::Word);
+            return Ok(point.then_some((fields, cells)));
+        }
+        if !self.shape.words && cells.iter().skip(self.width()).any(|cell| *cell != Cell::Missing) {
+            return Err(format::other_width(cells.len(), self.width()));
+        }
+        Ok(Some((fields, cells)))
+    }
 }
+
+/// The finite number in a field; none where it is missing.
+fn value(cell: Cell, field: &str) -> Result<Option<f64>, String> {
+    match cell {
+        Cell::Number(value) if value.is_finite() => Ok(Some(value)),
+        Cell::Number(_) => Err(format!("{} is not a finite number", quoted(field))),
+        Cell::Word => Err(format!("{} is not a number", quoted(field))),
+        Cell::Missing => Ok(None),
+    }
+}
+
+/// The fields of a line, and what is in each.
+type Line<'a> = (Vec<&'a str>, Vec<Cell>);
 
 /// What a line has in the columns asked for.
 enum Found {

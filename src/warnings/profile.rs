@@ -68,7 +68,9 @@ pub fn slope(before: &Before<'_>) -> Option<Warning> {
         return None;
     }
     let unit = match before.scene.indenter {
-        Indenter::Sampled { .. } if slope > 10.0 * STEEPEST => "; are the elevations in another unit than x?",
+        Indenter::Sampled { .. } | Indenter::Map { .. } if slope > 10.0 * STEEPEST => {
+            "; are the elevations in another unit than x?"
+        }
         _ => "",
     };
     let text = format!(

@@ -50,6 +50,30 @@ class Map:
     y: NDArray[numpy.float64]
     z: NDArray[numpy.float64]
 
+    def write(self, path: str | os.PathLike[str]) -> Path:
+        """Writes the heights as an array, ``[i, j]`` at ``x[i]``, ``y[j]``, which the profile ``"map"`` of a scene reads."""
+        path = Path(path)
+        if path.suffix != ".npy":
+            raise ValueError(f"the name of an array must end in .npy, got {path}")
+        numpy.save(path, numpy.ascontiguousarray(self.z, dtype=float))
+        return path
+
+    def indenter(self, path: str | os.PathLike[str], **keys: Any) -> dict[str, Any]:
+        """Writes the heights and gives the ``[indenter]`` table, of a scene in space, that reads them.
+
+        A surface that was measured from above has its peaks up: ``invert`` turns them towards the face.
+        """
+        return {
+            "profile": "map",
+            "file": str(self.write(path).absolute()),
+            "spacing": [_spacing(self.x), _spacing(self.y)],
+            "origin": [float(self.x[0]), float(self.y[0])],
+            "extend": "error",
+            "invert": True,
+            "detrend": "mean",
+            **keys,
+        }
+
     def cut(self, y: float) -> Profile:
         """The line along x that is nearest to ``y``."""
         return Profile(self.x, self.z[:, int(numpy.abs(self.y - y).argmin())])
@@ -74,6 +98,15 @@ def surface(source: str | os.PathLike[str] | Any, *, channel: int | None = None)
         return Profile(numpy.asarray(x, float) * metres, _whole(z) * metres)
     x, y, z = topography.positions_and_heights()
     return Map(numpy.asarray(x, float)[:, 0] * metres, numpy.asarray(y, float)[0] * metres, _whole(z) * metres)
+
+
+def _spacing(places: NDArray[numpy.float64]) -> float:
+    """The distance of equally spaced places."""
+    steps = numpy.diff(places)
+    spacing = float((places[-1] - places[0]) / (len(places) - 1))
+    if not numpy.allclose(steps, spacing, rtol=1e-6, atol=0.0):
+        raise ValueError("the places of a map are not equally spaced; interpolate it to a grid first")
+    return spacing
 
 
 def _whole(heights: Any) -> NDArray[numpy.float64]:

@@ -193,6 +193,8 @@ static FRACTIONAL: Keys = table(
 pub(crate) const EXTENDS: [(&str, Extend); 2] = [("periodic", Extend::Periodic), ("error", Extend::Error)];
 pub(crate) const DETRENDS: [(&str, Detrend); 3] =
     [("none", Detrend::None), ("mean", Detrend::Mean), ("line", Detrend::Line)];
+pub(crate) const DETRENDS_OF_MAPS: [(&str, Detrend); 3] =
+    [("none", Detrend::None), ("mean", Detrend::Mean), ("plane", Detrend::Plane)];
 pub(crate) const SEAMS: [(&str, Seam); 2] = [("none", Seam::None), ("blend", Seam::Blend)];
 
 static INDENTER: Keys = Keys {
@@ -212,6 +214,7 @@ static INDENTER: Keys = Keys {
                 "sphere",
                 "cone",
                 "waves",
+                "map",
             ],
         )
         .required(),
@@ -225,7 +228,10 @@ static INDENTER: Keys = Keys {
             Kind::Text("a formula of x (in space of x and y) on one line, such as \"5e-4*(1-cos(2*pi*x))\""),
         )
         .required(),
-        Key::new("file", Kind::Text("the name of a file of two columns, x and elevation in m")).required(),
+        Key::new("file", Kind::Text("the name of a file of elevations")).required().about("relative to the scene"),
+        Key::new("dataset", Kind::Text("the path of a dataset in the HDF5 file")).about("of a map in an .h5 file"),
+        one_or_two("spacing", LENGTH).about("from point to point of a map, where its file does not say it"),
+        one_or_two("origin", POSITION).about("where the first point of a map is; otherwise what its file says, or 0"),
         Key::new(
             "columns",
             Kind::Columns("two columns, x and elevation, by their numbers from 1 or their titles, such as [1, 3]"),
@@ -235,11 +241,11 @@ static INDENTER: Keys = Keys {
         Key::new("x_unit", Kind::LengthUnit),
         Key::new("z_unit", Kind::LengthUnit),
         Key::new("invert", Kind::Flag).default("false").about("h = -z, for a surface that was measured from above"),
-        choice("detrend", &words(&DETRENDS)).default("\"none\"").about("what is taken off"),
+        choice("detrend", &["none", "mean", "line", "plane"]).default("\"none\"").about("what is taken off"),
         number("offset", POSITION).default("0.0").about("added to h"),
         choice("seam", &words(&SEAMS)).default("\"none\"").about("how the ends meet where the profile repeats"),
         choice("extend", &words(&EXTENDS)).required().about("beyond the ends"),
-        number("period", LENGTH),
+        one_or_two("period", LENGTH),
         number("hurst", Quantity::within("a Hurst exponent above 0 and at most 1", Beyond(0.0), At(1.0))).required(),
         number("rms_slope", SLOPE).about("or rms_height"),
         number("rms_height", LENGTH).about("or rms_slope"),
@@ -266,6 +272,13 @@ static INDENTER: Keys = Keys {
             ("sphere", &["radius", "centre"]),
             ("cone", &["slope", "centre"]),
             ("waves", &["amplitude", "wavelength"]),
+            (
+                "map",
+                &[
+                    "file", "dataset", "spacing", "origin", "unit", "x_unit", "z_unit", "invert", "detrend", "offset",
+                    "seam", "extend", "period",
+                ],
+            ),
             ("rough", &["hurst", "rms_slope", "rms_height", "shortest", "longest", "period", "seed"]),
         ],
     }),

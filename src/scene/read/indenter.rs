@@ -3,8 +3,9 @@
 use nalgebra::Vector2;
 
 use crate::error::Result;
+use crate::heightmap::Format;
 use crate::scene::keys::Section;
-use crate::scene::keys::tables::{DETRENDS, EXTENDS, SEAMS};
+use crate::scene::keys::tables::{DETRENDS, DETRENDS_OF_MAPS, EXTENDS, SEAMS};
 use crate::scene::{Detrend, Extend, Indenter, Reading, Rms, Seam};
 use crate::table::{self, Choice, Unit};
 
@@ -21,9 +22,10 @@ enum Profile {
     Sphere,
     Cone,
     Waves,
+    Map,
 }
 
-const PROFILES: [(&str, Profile); 11] = [
+const PROFILES: [(&str, Profile); 12] = [
     ("harmonic", Profile::Harmonic),
     ("parabola", Profile::Parabola),
     ("circle", Profile::Circle),
@@ -35,6 +37,7 @@ const PROFILES: [(&str, Profile); 11] = [
     ("sphere", Profile::Sphere),
     ("cone", Profile::Cone),
     ("waves", Profile::Waves),
+    ("map", Profile::Map),
 ];
 
 /// Reads the indenter.
@@ -66,22 +69,33 @@ pub(super) fn read(section: &Section) -> Result<Indenter> {
         Profile::Waves => {
             Ok(Indenter::Waves { amplitude: both(section, "amplitude")?, wavelength: both(section, "wavelength")? })
         }
+        Profile::Map => map(section),
     }
 }
 
 /// A length for both directions, or one for each.
 fn both(section: &Section, key: &str) -> Result<Vector2<f64>> {
-    let lengths = section.one_or_two(key)?.ok_or_else(|| section.missing(key, section.what(key)))?;
-    Ok(Vector2::new(lengths[0], lengths[lengths.len() - 1]))
+    optional_both(section, key)?.ok_or_else(|| section.missing(key, section.what(key)))
+}
+
+/// As [`both`], or nothing.
+fn optional_both(section: &Section, key: &str) -> Result<Option<Vector2<f64>>> {
+    Ok(section.one_or_two(key)?.map(|lengths| Vector2::new(lengths[0], lengths[lengths.len() - 1])))
 }
 
 /// A place on the face.
 fn centre(section: &Section) -> Result<Vector2<f64>> {
-    const WHAT: &str = "an array of two positions in m, along x and along y";
-    match section.one_or_two("centre")?.as_deref() {
-        None => Err(section.missing("centre", WHAT)),
-        Some([x, y]) => Ok(Vector2::new(*x, *y)),
-        Some(_) => Err(section.error("centre", format!("must be {WHAT}"))),
+    place(section, "centre")?.ok_or_else(|| section.missing("centre", PLACE))
+}
+
+const PLACE: &str = "an array of two positions in m, along x and along y";
+
+/// As [`centre`], or nothing.
+fn place(section: &Section, key: &str) -> Result<Option<Vector2<f64>>> {
+    match section.one_or_two(key)?.as_deref() {
+        None => Ok(None),
+        Some([x, y]) => Ok(Some(Vector2::new(*x, *y))),
+        Some(_) => Err(section.error(key, format!("must be {PLACE}"))),
     }
 }
 
@@ -89,15 +103,57 @@ fn sampled(section: &Section) -> Result<Indenter> {
     let file = text(section, "file")?;
     let extend = section.choice("extend", &EXTENDS, &[])?;
     let period = section.optional_number("period")?;
-    let reading = reading(section)?;
-    if extend == Extend::Error && (period.is_some() || reading.seam == Seam::Blend) {
-        let key = if period.is_some() { "period" } else { "seam" };
-        return Err(section.error(key, "needs extend = \"periodic\"; remove it, or change that"));
-    }
+    let reading = reading(section, &DETRENDS)?;
+    repeats(section, extend, reading.seam)?;
     Ok(Indenter::Sampled { file, reading, extend, period })
 }
 
-fn reading(section: &Section) -> Result<Reading> {
+/// What is for profiles that repeat stands just there.
+fn repeats(section: &Section, extend: Extend, seam: Seam) -> Result<()> {
+    let key = if section.has("period") { "period" } else { "seam" };
+    match extend == Extend::Error && (section.has("period") || seam == Seam::Blend) {
+        true => Err(section.error(key, "needs extend = \"periodic\"; remove it, or change that")),
+        false => Ok(()),
+    }
+}
+
+fn map(section: &Section) -> Result<Indenter> {
+    let file = text(section, "file")?;
+    let format = Format::of(&file).map_err(|reason| section.error("file", reason))?;
+    let dataset = section.optional_text("dataset")?;
+    let spacing = optional_both(section, "spacing")?;
+    let extend = section.choice("extend", &EXTENDS, &[])?;
+    match (format == Format::Hdf5, &dataset) {
+        (true, None) => return Err(section.missing("dataset", section.what("dataset"))),
+        (false, Some(_)) => return Err(section.error("dataset", format!("is for .h5 files, not {file:?}"))),
+        _ => {}
+    }
+    match (format.has_spacing(), spacing) {
+        (false, None) => {
+            return Err(section.missing("spacing", "the distance in m of neighbouring points, or [dx, dy]"));
+        }
+        (true, Some(_)) => return Err(section.error("spacing", format!("is what {file:?} says itself; leave it out"))),
+        _ => {}
+    }
+    let mut reading = reading(section, &DETRENDS_OF_MAPS)?;
+    for key in ["unit", "x_unit", "z_unit"] {
+        let said = section.table().get(key).and_then(toml::Value::as_str);
+        if format.is_in_metres() && said.is_some_and(|unit| unit != "m") {
+            return Err(section.error(key, format!("must be \"m\" or left out: {file:?} is in m by its standard")));
+        }
+    }
+    if format != Format::Points {
+        if section.has("x_unit") {
+            return Err(section.error("x_unit", "is for .xyz files; the spacing is in m"));
+        }
+        reading.x_unit = None;
+    }
+    repeats(section, extend, reading.seam)?;
+    let (origin, period) = (place(section, "origin")?, optional_both(section, "period")?);
+    Ok(Indenter::Map { file, dataset, spacing, origin, reading, extend, period })
+}
+
+fn reading(section: &Section, detrends: &[(&str, Detrend)]) -> Result<Reading> {
     let names = Unit::names(table::Quantity::Length);
     let units: Vec<(&str, &'static str)> = names.iter().map(|name| (*name, *name)).collect();
     let both = section.optional_choice("unit", &units, &[])?;
@@ -110,7 +166,7 @@ fn reading(section: &Section) -> Result<Reading> {
         x_unit: unit("x_unit")?,
         z_unit: unit("z_unit")?,
         invert: section.optional_flag("invert")?.unwrap_or(false),
-        detrend: section.optional_choice("detrend", &DETRENDS, &[])?.unwrap_or(Detrend::None),
+        detrend: section.optional_choice("detrend", detrends, &[])?.unwrap_or(Detrend::None),
         offset: section.optional_number("offset")?.unwrap_or(0.0),
         seam: section.optional_choice("seam", &SEAMS, &[])?.unwrap_or(Seam::None),
     })
