@@ -39,13 +39,29 @@ def test_figures_of_a_sweep(scene: mpjr.Scene, tmp_path: Path) -> None:
     pyplot.close("all")
 
 
-def test_what_is_drawn_along_x_is_refused_in_space(tmp_path: Path) -> None:
+def test_figures_in_space(tmp_path: Path) -> None:
     scene = mpjr.Scene.like("space")
     scene.directory = tmp_path
-    scene["layer.cells"] = [6, 6, 2]
+    scene["layer.cells"] = [6, 8, 2]
     scene["phase.drag.steps"] = 2
     run = mpjr.run(scene, tmp_path / "space.h5", progress=False)
     assert [line.get_label() for line in plot.history(run).lines] == ["N", "Q x", "Q y", "hysteretic x", "hysteretic y"]
-    with pytest.raises(ValueError, match="in the plane"):
-        plot.tractions(run)
+    for name in ("energy", "pressure", "shear", "gap", "stick_slip", "tractions", "profile"):
+        axes = getattr(plot, name)(run)
+        axes.figure.savefig(tmp_path / f"{name}.png")
+        assert axes.get_xlabel()
+    pressure = numpy.asarray(run["interface/pressure"])[-1].reshape(7, 9)
+    i, j = numpy.unravel_index(pressure.argmax(), pressure.shape)
+    assert numpy.array_equal(plot.tractions(run).lines[0].get_ydata(), pressure[:, j])
+    assert numpy.array_equal(plot.tractions(run, along="y").lines[0].get_ydata(), pressure[i])
+    drawn = plot.pressure(run).collections[0].get_array()
+    assert numpy.allclose(numpy.ma.filled(drawn, 0.0).reshape(9, 7), pressure.T)
+    with pytest.raises(ValueError, match="left to mpjr plot"):
+        plot.stress(run)
+    pyplot.close("all")
+
+
+def test_what_is_seen_from_above_is_refused_in_the_plane(run: xarray.DataTree) -> None:
+    with pytest.raises(ValueError, match="in space"):
+        plot.pressure(run)
     pyplot.close("all")

@@ -206,6 +206,7 @@ impl Heights {
     /// As a list of numbers: the heights, and behind them counts, spacing and origin.
     pub fn into_numbers(self, spacing: [f64; 2], origin: [f64; 2]) -> Vec<f64> {
         let mut numbers = self.values;
+        numbers.reserve_exact(6);
         numbers.extend(self.counts.map(|count| count as f64).into_iter().chain(spacing).chain(origin));
         numbers
     }

@@ -7,7 +7,7 @@ use super::bar::Bar;
 use super::layout::{Drawn, Place, Sides, labels, left_of};
 use super::legend::{Legend, Sample};
 use super::numbers::{decimals, minus};
-use super::painter::{Frame, Painter};
+use super::painter::{Frame, INK, Painter};
 use super::ticks::linear;
 use super::{Axis, Colour, Ramp};
 use crate::error::Result;
@@ -56,6 +56,8 @@ pub struct Map {
     pub colouring: Colouring,
     /// Whether a length on one axis is as long on the other.
     pub equal: bool,
+    /// Over the field, from here to there.
+    pub arrows: Vec<[(f64, f64); 2]>,
 }
 
 impl Colouring {
@@ -124,6 +126,7 @@ impl<DB: DrawingBackend> Drawn<DB> for Map {
         let across = ruler(&self.x, self.raster.x, (frame.right - frame.left) / 66.0);
         let (x, y) = (across.along(frame.left, frame.right), upwards.along(frame.bottom, frame.top));
         field(self, painter, &frame, (&x, &y))?;
+        self.arrows.iter().try_for_each(|ends| arrow(painter, &frame, (&x, &y), *ends))?;
         painter.axes(&frame, (&x, &across.ticks), (&y, &upwards.ticks))?;
         labels(painter, &frame, sides, (&across.label, &upwards.label))?;
         self.bar().iter().try_for_each(|bar| bar.draw(painter, &frame))?;
@@ -192,6 +195,32 @@ fn field<DB: DrawingBackend>(
             }
             start = end;
         }
+    }
+    Ok(())
+}
+
+/// Dark on a pale edge, so that it is seen on every colour.
+fn arrow<DB: DrawingBackend>(
+    painter: &Painter<DB>,
+    frame: &Frame,
+    (x, y): (&Mapping, &Mapping),
+    ends: [(f64, f64); 2],
+) -> Result<()> {
+    /// Of its length: that of the head, and half of its width.
+    const HEAD: [f64; 2] = [0.4, 0.2];
+    let place = |(at_x, at_y): (f64, f64)| x.position(at_x).zip(y.position(at_y));
+    let [Some(tail), Some(tip)] = ends.map(place) else { return Ok(()) };
+    let inside = |(x, y): (f64, f64)| x >= frame.left && x <= frame.right && y >= frame.top && y <= frame.bottom;
+    if !(inside(tail) && inside(tip)) {
+        return Ok(());
+    }
+    let along = (tip.0 - tail.0, tip.1 - tail.1);
+    let barb = |side: f64| {
+        (tip.0 - HEAD[0] * along.0 + side * HEAD[1] * along.1, tip.1 - HEAD[0] * along.1 - side * HEAD[1] * along.0)
+    };
+    for (colour, width) in [((255, 255, 255), 3.0), (INK, 1.4)] {
+        painter.line(&[tail, tip], colour, width)?;
+        painter.line(&[barb(1.0), tip, barb(-1.0)], colour, width)?;
     }
     Ok(())
 }

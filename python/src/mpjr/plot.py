@@ -16,7 +16,19 @@ from matplotlib.tri import Triangulation
 if TYPE_CHECKING:
     from ._run import Sweep
 
-__all__ = ["energy", "friction", "history", "onset", "profile", "stick_slip", "stress", "tractions"]
+__all__ = [
+    "energy",
+    "friction",
+    "gap",
+    "history",
+    "onset",
+    "pressure",
+    "profile",
+    "shear",
+    "stick_slip",
+    "stress",
+    "tractions",
+]
 
 
 def _axes(axes: Axes | None) -> Axes:
@@ -54,44 +66,87 @@ def energy(run: xarray.DataTree, axes: Axes | None = None) -> Axes:
     return axes
 
 
-def tractions(run: xarray.DataTree, time: float | None = None, axes: Axes | None = None) -> Axes:
-    """Pressure and shear along the face at the stored moment nearest to ``time``, s; at the last one by default."""
+def tractions(run: xarray.DataTree, time: float | None = None, axes: Axes | None = None, *, along: str = "x") -> Axes:
+    """Pressure and shear along the face at the stored moment nearest to ``time``, s; at the last one by default.
+
+    In space ``along`` x or y, where the pressure is greatest.
+    """
     axes = _axes(axes)
-    frame = _frame(_in_plane(run, "interface"), time)
-    axes.plot(frame["x"], frame["pressure"], label="pressure")
-    axes.plot(frame["x"], frame["shear"], label="shear")
-    axes.set(xlabel="x, m", ylabel="traction, Pa", title=f"t = {float(frame['time']):.4g} s")
+    frame, place = _line(run, time, along)
+    axes.plot(frame[along], frame["pressure"], label="pressure")
+    if "direction" in frame["shear"].dims:
+        for direction in numpy.asarray(frame["direction"]):
+            axes.plot(frame[along], frame["shear"].sel(direction=direction), label=f"shear {direction}")
+    else:
+        axes.plot(frame[along], frame["shear"], label="shear")
+    axes.set(xlabel=f"{along}, m", ylabel="traction, Pa", title=f"t = {float(frame['time']):.4g} s{place}")
     axes.legend()
     return axes
 
 
-def profile(run: xarray.DataTree, time: float | None = None, axes: Axes | None = None) -> Axes:
-    """The deformed face, and the indenter over it, at the stored moment nearest to ``time``, s."""
+def profile(run: xarray.DataTree, time: float | None = None, axes: Axes | None = None, *, along: str = "x") -> Axes:
+    """The deformed face, and the indenter over it, at the stored moment nearest to ``time``, s.
+
+    In space ``along`` x or y, where the pressure is greatest.
+    """
     axes = _axes(axes)
-    frame = _frame(_in_plane(run, "interface"), time)
-    x = frame["x"] + frame["displacement_x"]
-    axes.plot(x, frame["displacement_z"], label="face")
-    axes.plot(x, frame["displacement_z"] + frame["gap"], label="indenter")
-    axes.set(xlabel="x, m", ylabel="z, m", title=f"t = {float(frame['time']):.4g} s")
+    frame, place = _line(run, time, along)
+    if "displacement" in frame:
+        across, up = (frame["displacement"].sel(axis=name) for name in (along, "z"))
+    else:
+        across, up = frame["displacement_x"], frame["displacement_z"]
+    x = frame[along] + across
+    axes.plot(x, up, label="face")
+    axes.plot(x, up + frame["gap"], label="indenter")
+    axes.set(xlabel=f"{along}, m", ylabel="z, m", title=f"t = {float(frame['time']):.4g} s{place}")
     axes.legend()
     return axes
 
 
-def stick_slip(run: xarray.DataTree, axes: Axes | None = None) -> Axes:
-    """Stick, slip and no contact, x against time.
+def pressure(run: xarray.DataTree, time: float | None = None, axes: Axes | None = None) -> Axes:
+    """In space the pressure from above at the stored moment nearest to ``time``, s; nothing where there is no contact."""
+    frame = _from_above(run, time)
+    return _map(frame, frame["pressure"].where(frame["pressure"] > 0), axes)
+
+
+def shear(run: xarray.DataTree, time: float | None = None, axes: Axes | None = None) -> Axes:
+    """In space the magnitude of the shear, with arrows along it, at the stored moment nearest to ``time``, s."""
+    frame = _from_above(run, time)
+    touched = frame["pressure"] > 0
+    axes = _map(frame, _magnitude(frame["shear"]).where(touched).assign_attrs(frame["shear"].attrs), axes)
+    some = {name: slice(None, None, max(1, frame.sizes[name] // 18)) for name in ("x", "y")}
+    arrows = frame["shear"].where(touched).isel(some).transpose("direction", "y", "x")
+    axes.quiver(arrows["x"], arrows["y"], *arrows.values, color="w", edgecolor="k", linewidth=0.5, pivot="mid")
+    return axes
+
+
+def gap(run: xarray.DataTree, time: float | None = None, axes: Axes | None = None) -> Axes:
+    """In space the gap from above at the stored moment nearest to ``time``, s; nothing where there is contact."""
+    frame = _from_above(run, time)
+    return _map(frame, frame["gap"].where(frame["pressure"] <= 0), axes)
+
+
+def stick_slip(run: xarray.DataTree, axes: Axes | None = None, *, time: float | None = None) -> Axes:
+    """Stick, slip and no contact, x against time; in space from above at the stored moment nearest to ``time``, s.
 
     A point in contact counts as sticking below a thousandth of the fastest slip rate at that moment.
     """
     axes = _axes(axes)
-    table = _in_plane(run, "interface")
-    rate = abs(table["slip_rate"])
-    slips = (rate > 1e-3 * rate.max("x")).astype(int)
+    in_space = "x" not in run["interface"].variables
+    table = _from_above(run, time) if in_space else run["interface"].to_dataset()
+    rate: Any = abs(table["slip_rate"])
+    if in_space:
+        rate = _magnitude(table["slip_rate"])
+    slips = (rate > 1e-3 * (rate.max() if in_space else rate.max("x"))).astype(int)
     state = (table["pressure"] > 0).astype(int) * (1 + slips)
     colours = pyplot.get_cmap("viridis_r", 3)
-    image = axes.pcolormesh(table["time"], table["x"], state.transpose("x", "time"), cmap=colours, vmin=-0.5, vmax=2.5)
+    over, up = ("x", "y") if in_space else ("time", "x")
+    image = axes.pcolormesh(table[over], table[up], state.transpose(up, over), cmap=colours, vmin=-0.5, vmax=2.5)
     bar = axes.figure.colorbar(image, ax=axes, ticks=[0, 1, 2])
     bar.ax.set_yticklabels(["no contact", "stick", "slip"])
-    axes.set(xlabel="time, s", ylabel="x, m")
+    axes.set(xlabel="x, m" if in_space else "time, s", ylabel=f"{up}, m")
+    if in_space:
+        axes.set(aspect="equal", title=f"t = {float(table['time']):.4g} s")
     return axes
 
 
@@ -145,8 +200,51 @@ def friction(sweep: Sweep, axes: Axes | None = None) -> Axes:
 def _in_plane(run: xarray.DataTree, group: str) -> xarray.Dataset:
     """A group of results whose face is a line."""
     if "x" not in run["interface"].variables:
-        raise ValueError("this figure is of runs in the plane; draw those in space from their variables")
+        raise ValueError("this figure is of runs in the plane; in space it is left to mpjr plot")
     return run[group].to_dataset()
+
+
+def _from_above(run: xarray.DataTree, time: float | None) -> xarray.Dataset:
+    """A stored moment of a face of two directions, with x and y in the place of its nodes."""
+    if "x" in run["interface"].variables:
+        raise ValueError("this figure is of runs in space")
+    frame = _frame(run["interface"].to_dataset(), time)
+    columns, rows = (int(count) for count in frame["coordinates"].attrs["grid"])
+    x, y = frame["coordinates"].transpose("direction", "node").values
+    fields = {}
+    for name, field in frame.drop_vars("coordinates").data_vars.items():
+        rest = [dimension for dimension in field.dims if dimension != "node"]
+        values = field.transpose("node", *rest).values
+        fields[name] = (["x", "y", *rest], values.reshape(columns, rows, *values.shape[1:]), field.attrs)
+    kept = {name: frame[name] for name in ("time", "direction", "axis")}
+    return xarray.Dataset(fields, {"x": x[::rows], "y": y[:rows], **kept})
+
+
+def _line(run: xarray.DataTree, time: float | None, along: str) -> tuple[xarray.Dataset, str]:
+    """A stored moment along a line, and in space where that is."""
+    if "x" in run["interface"].variables:
+        if along != "x":
+            raise ValueError("in the plane a face is along x")
+        return _frame(run["interface"].to_dataset(), time), ""
+    if along not in ("x", "y"):
+        raise ValueError(f"a line is along x or y, not {along}")
+    frame, across = _from_above(run, time), "y" if along == "x" else "x"
+    deepest = frame["pressure"].max(along).argmax(across)
+    line = frame.isel({across: int(deepest)})
+    return line, f", {across} = {float(line[across]):.3g} m"
+
+
+def _magnitude(field: Any) -> Any:
+    """Of a vector along the face."""
+    return numpy.sqrt((field**2).sum("direction"))
+
+
+def _map(frame: xarray.Dataset, field: Any, axes: Axes | None) -> Axes:
+    axes = _axes(axes)
+    image = axes.pcolormesh(frame["x"], frame["y"], field.transpose("y", "x"), shading="nearest")
+    axes.figure.colorbar(image, ax=axes, label=f"{field.attrs['long_name']}, {field.attrs['units']}")
+    axes.set(xlabel="x, m", ylabel="y, m", aspect="equal", title=f"t = {float(frame['time']):.4g} s")
+    return axes
 
 
 def _frame(dataset: xarray.Dataset, time: float | None) -> xarray.Dataset:

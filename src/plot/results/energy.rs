@@ -14,6 +14,8 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
     };
     let supplied =
         |label: &str, values: &[f64]| Curve { colour: REFERENCE, ..curve(label, 0, values).stroked(Stroke::Dashed) };
+    let [_, unit] = run.units();
+    let energy = format!("energy, {unit}");
     let mut figures = Vec::new();
     let mut add = |title: &str, label: &str, curves: Vec<Curve>| {
         let figure = Figure::new(title, Axis::linear("time t, s"), Axis::linear(label), curves);
@@ -30,14 +32,14 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
     let mut parts: Vec<Curve> = parts.map(|(label, colour, values)| curve(label, *colour, values)).collect();
     if run.scene.friction.is_some() {
         let whole = vec![curve("dissipated by friction", 1, &friction), supplied("work of the indenter", &work)];
-        add("Work and friction", "energy, J/m", whole);
+        add("Work and friction", &energy, whole);
         let rest: Vec<f64> = work.iter().zip(&friction).map(|(work, friction)| work - friction).collect();
         parts.push(supplied("work less friction", &rest));
-        add("Apart from friction", "energy, J/m", parts);
+        add("Apart from friction", &energy, parts);
     } else {
         parts.push(supplied("work of the indenter", &work));
-        add("Work and where it goes", "energy, J/m", parts);
+        add("Work and where it goes", &energy, parts);
     }
-    add("What does not balance", "imbalance, J/m", vec![curve("", 5, &column("imbalance"))]);
+    add("What does not balance", &format!("imbalance, {unit}"), vec![curve("", 5, &column("imbalance"))]);
     Ok(Sheet::stacked(figures, 320))
 }

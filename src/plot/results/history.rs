@@ -8,15 +8,29 @@ use crate::scene::Friction;
 /// Normal, tangential and hysteretic force; dotted lines where a phase ends.
 pub fn sheet(run: &Run) -> Result<Sheet> {
     let history = &run.history;
+    let [unit, _] = run.units();
     let curve = |values: &[f64], colour: usize| against_time(run, "", values).coloured(PALETTE[colour]);
-    let tangential = limits(run).into_iter().chain([curve(&history.tangential, 1)]).collect();
+    // In space along x, and dashed along y.
+    let both = |values: &[f64], across: usize, colour: usize| match &history.across {
+        None => vec![curve(values, colour)],
+        Some(others) => {
+            let along = Curve { label: "along x".into(), ..curve(values, colour) };
+            let across = Curve { label: "along y".into(), ..curve(&others[across], colour).stroked(Stroke::Dashed) };
+            vec![along, across]
+        }
+    };
+    let tangential = limits(run).into_iter().chain(both(&history.tangential, 0, 1)).collect();
     let figure = |title: &str, label: &str, curves: Vec<Curve>, first: bool| {
         with_phases(run, Figure::new(title, Axis::linear("time t, s"), Axis::linear(label), curves), first)
     };
+    let hysteretic = match history.across {
+        None => format!("∫ p ∂h/∂x dx, {unit}"),
+        Some(_) => format!("∫ p ∇h dA, {unit}"),
+    };
     let figures = vec![
-        figure("Normal force", "N, N/m", vec![curve(&history.normal, 0)], true),
-        figure("Tangential force", "Q, N/m", tangential, false),
-        figure("Hysteretic force", "∫ p ∂h/∂x dx, N/m", vec![curve(&history.hysteretic, 2)], false),
+        figure("Normal force", &format!("N, {unit}"), vec![curve(&history.normal, 0)], true),
+        figure("Tangential force", &format!("Q, {unit}"), tangential, false),
+        figure("Hysteretic force", &hysteretic, both(&history.hysteretic, 1, 2), false),
     ];
     Ok(Sheet::stacked(figures, 320))
 }
@@ -34,7 +48,9 @@ pub(super) fn limits(run: &Run) -> Vec<Curve> {
         let values: Vec<f64> = history.normal.iter().map(|normal| sign * friction * normal).collect();
         against_time(run, label, &values).coloured((130, 130, 130)).stroked(Stroke::Broad)
     };
-    let (low, high) = history.tangential.iter().fold((0.0f64, 0.0f64), |(low, high), q| (low.min(*q), high.max(*q)));
+    let across = history.across.iter().flat_map(|[tangential, _]| tangential);
+    let all = history.tangential.iter().chain(across);
+    let (low, high) = all.fold((0.0f64, 0.0f64), |(low, high), q| (low.min(*q), high.max(*q)));
     match friction {
         0.0 => Vec::new(),
         _ if low < -0.05 * high => vec![limit(1.0, "±f N"), limit(-1.0, "")],

@@ -6,6 +6,7 @@ mod history;
 mod material;
 mod profile;
 mod reactions;
+mod space;
 mod stick_slip;
 mod stress;
 mod tractions;
@@ -48,14 +49,16 @@ pub struct History {
     pub phase: Vec<usize>,
     /// Normal approach of the indenter, m.
     pub approach: Vec<f64>,
-    /// Tangential displacement of the indenter, m.
+    /// Tangential displacement of the indenter, m; in space how far it is from where it began.
     pub sliding: Vec<f64>,
-    /// N/m
+    /// N/m, in space N
     pub normal: Vec<f64>,
-    /// N/m
+    /// N/m, in space N and along x
     pub tangential: Vec<f64>,
-    /// N/m
+    /// N/m, in space N and along x
     pub hysteretic: Vec<f64>,
+    /// Tangential and hysteretic force along y, N; nothing in the plane.
+    pub across: Option<[Vec<f64>; 2]>,
     /// Share of the face in contact.
     pub contact: Vec<f64>,
     /// Share of the contact that sticks.
@@ -71,7 +74,10 @@ impl History {
     /// The first row of sliding at which nothing sticks any more.
     pub fn sliding_start(&self) -> Option<usize> {
         let first = self.approach_end() + 1;
-        (first..self.time.len()).find(|&row| self.stick[row] == 0.0 && self.tangential[row] != 0.0)
+        let sheared = |row: usize| {
+            self.tangential[row] != 0.0 || self.across.as_ref().is_some_and(|[tangential, _]| tangential[row] != 0.0)
+        };
+        (first..self.time.len()).find(|&row| self.stick[row] == 0.0 && sheared(row))
     }
 }
 
@@ -87,7 +93,7 @@ pub struct Kind {
 }
 
 /// All figures of a result file.
-pub const FIGURES: [Kind; 8] = [
+pub const FIGURES: [Kind; 11] = [
     Kind { name: "history", shows: "forces against time", lacks: |_| None, sheet: history::sheet },
     Kind {
         name: "reactions",
@@ -106,13 +112,13 @@ pub const FIGURES: [Kind; 8] = [
     },
     Kind {
         name: "tractions",
-        shows: "tractions along the face (Figure 6)",
+        shows: "tractions along the face (Figure 6); in space along x and y where the contact is deepest",
         lacks: |run| run.lacks_interface(),
         sheet: tractions::sheet,
     },
     Kind {
         name: "stress",
-        shows: "stress in the bulk (Figure 5)",
+        shows: "stress in the bulk (Figure 5); in space in the section along x where the contact is deepest",
         lacks: |run| {
             let found = run.results.has("bulk/stress") && run.results.bulk("time").is_ok_and(|time| time.rows > 0);
             (!found).then_some("no bulk fields (the scene's output.bulk_at asks for them)")
@@ -121,16 +127,32 @@ pub const FIGURES: [Kind; 8] = [
     },
     Kind {
         name: "stick-slip",
-        shows: "stick, slip and no contact, x against t",
+        shows: "stick, slip and no contact, x against t; in space from above",
         lacks: |run| run.lacks_interface(),
         sheet: stick_slip::sheet,
     },
     Kind {
         name: "profile",
-        shows: "indenter and deformed face",
+        shows: "indenter and deformed face; in space along x and y where the contact is deepest",
         lacks: |run| run.lacks_interface(),
         sheet: profile::sheet,
     },
+    Kind {
+        name: "pressure",
+        shows: "in space: the pressure from above",
+        lacks: Run::lacks_space,
+        sheet: space::maps::pressure,
+    },
+    Kind {
+        name: "shear",
+        shows: "in space: the magnitude and the direction of the shear",
+        lacks: |run| match run.scene.friction {
+            None => Some("no friction"),
+            Some(_) => run.lacks_space(),
+        },
+        sheet: space::maps::shear,
+    },
+    Kind { name: "gap", shows: "in space: the gap from above", lacks: Run::lacks_space, sheet: space::maps::gap },
     Kind {
         name: "material",
         shows: "relaxation, loss and storage moduli, loss tangent (Figure 3)",
@@ -168,18 +190,36 @@ impl Run {
             values if values.len() == time.len() => Ok(values),
             values => Err(refused(format!("/history/{name} has {} values for {} times", values.len(), time.len()))),
         };
+        let across = |name: &str| match results.history_along(name, 1)? {
+            values if values.len() == time.len() => Ok(values),
+            values => Err(refused(format!("/history/{name} has {} values for {} times", values.len(), time.len()))),
+        };
+        let space = scene.is_in_space();
+        let mut sliding = column("sliding")?;
+        if space {
+            sliding.iter_mut().zip(across("sliding")?).for_each(|(x, y)| *x = x.hypot(y));
+        }
         let history = History {
             phase: column("phase")?.into_iter().map(|phase| phase as usize).collect(),
             approach: column("approach")?,
-            sliding: column("sliding")?,
+            sliding,
             normal: column("normal_force")?,
             tangential: column("tangential_force")?,
             hysteretic: column("hysteretic_force")?,
             contact: column("contact_fraction")?,
             stick: column("stick_fraction")?,
+            across: match space {
+                true => Some([across("tangential_force")?, across("hysteretic_force")?]),
+                false => None,
+            },
             time,
         };
         Ok(Self { path: path.to_owned(), scene, history, closed: None, law: None, results })
+    }
+
+    /// The unit of forces, and that of energies.
+    fn units(&self) -> [&'static str; 2] {
+        if self.scene.is_in_space() { ["N", "J"] } else { ["N/m", "J/m"] }
     }
 
     /// Whether all phases were solved.
@@ -223,6 +263,13 @@ impl Run {
     fn lacks_interface(&self) -> Option<&'static str> {
         let found = self.results.interface("time").is_ok_and(|time| time.rows > 0);
         (!found).then_some("no interface profiles")
+    }
+
+    fn lacks_space(&self) -> Option<&'static str> {
+        match self.scene.is_in_space() {
+            true => self.lacks_interface(),
+            false => Some("it is for runs in space"),
+        }
     }
 
     fn face(&self) -> Result<Face<'_>> {

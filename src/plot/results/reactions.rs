@@ -66,6 +66,8 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
     let figure = |title: &str, label: &str, curves: Vec<Curve>, first: bool| {
         with_phases(run, Figure::new(title, Axis::linear("time t, s"), Axis::linear(label), curves), first)
     };
+    let [unit, _] = run.units();
+    let q = if history.across.is_some() { "Q_{x}" } else { "Q" };
     let (down, along) =
         (curve("approach D", (&path.time, &path.approach), 0), curve("sliding s", (&path.time, &path.sliding), 1));
     let mut figures = if path.is_alike() {
@@ -76,8 +78,8 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
             figure(&format!("Imposed sliding{beyond}"), "s, m", vec![along], false),
         ]
     };
-    figures.push(figure("Normal force", "N, N/m", normal, false));
-    figures.push(figure("Tangential force", "Q, N/m", tangential, false));
+    figures.push(figure("Normal force", &format!("N, {unit}"), normal, false));
+    figures.push(figure("Tangential force", &format!("{q}, {unit}"), tangential, false));
     Ok(Sheet::stacked(figures, 340))
 }
 

@@ -4,14 +4,21 @@ use super::face::Face;
 use super::{Run, nearest};
 use crate::error::Result;
 use crate::output::reader::Field;
-use crate::plot::{Axis, Colouring, Map, Panel, Raster, Sheet};
+use crate::plot::{Axis, Colour, Colouring, Map, Panel, Raster, Sheet};
 use crate::scene::Law;
+
+/// What there is, and its colour.
+pub(super) const CLASSES: [(&str, Colour); 3] =
+    [("no contact", (226, 226, 226)), ("stick", (0, 114, 178)), ("slip", (230, 159, 0))];
 
 /// Fields of the map along the time.
 const COLUMNS: usize = 900;
 
 /// The approach, the transition to sliding, and the whole history.
 pub fn sheet(run: &Run) -> Result<Sheet> {
+    if run.scene.is_in_space() {
+        return super::space::maps::stick_slip(run);
+    }
     let face = run.face()?;
     let state = State { run, face: &face, shear: face.field("shear")?, slip_rate: face.field("slip_rate")? };
     let t0 = run.approach_time();
@@ -44,18 +51,25 @@ struct State<'a> {
 impl State<'_> {
     /// 0 no contact, 1 sticks, 2 slips: as `stick_fraction` counts them.
     fn class(&self, frame: usize, node: usize) -> f64 {
-        let [pressure, shear, rate] =
-            [self.face.pressure(), &self.shear, &self.slip_rate].map(|field| field.row(frame)[node]);
-        let friction = self.run.scene.friction.as_ref();
-        let sticks = match friction.map(|friction| (friction.law, friction.coefficient())) {
-            _ if pressure <= 0.0 => return 0.0,
-            Some((Law::CoulombTanh { regularisation }, _)) => rate.abs() < regularisation,
-            // Up to round-off.
-            Some((_, Some(coefficient))) => shear.abs() < (1.0 - 1e-12) * coefficient * pressure,
-            Some((_, None)) => rate == 0.0,
-            None => false,
-        };
-        if sticks { 1.0 } else { 2.0 }
+        let fields = [self.face.pressure(), &self.shear, &self.slip_rate];
+        let [pressure, shear, rate] = fields.map(|field| field.row(frame)[node]);
+        match pressure > 0.0 {
+            false => 0.0,
+            true if sticks(self.run, (pressure, shear.abs(), rate.abs())) => 1.0,
+            true => 2.0,
+        }
+    }
+}
+
+/// Whether a point in contact sticks, with its pressure and what its shear and slip rate amount to.
+pub(super) fn sticks(run: &Run, (pressure, shear, rate): (f64, f64, f64)) -> bool {
+    let friction = run.scene.friction.as_ref();
+    match friction.map(|friction| (friction.law, friction.coefficient())) {
+        Some((Law::CoulombTanh { regularisation }, _)) => rate < regularisation,
+        // Up to round-off.
+        Some((_, Some(coefficient))) => shear < (1.0 - 1e-12) * coefficient * pressure,
+        Some((_, None)) => rate == 0.0,
+        None => false,
     }
 }
 
@@ -85,11 +99,8 @@ fn map(state: &State<'_>, (from, to): (f64, f64), origin: f64, (title, label): (
         x: Axis::linear(label).over(time.0, time.1),
         y: Axis::linear("x, m"),
         raster: Raster { x: time, y: ends, columns: COLUMNS, values },
-        colouring: Colouring::Classes(vec![
-            ("no contact".into(), (226, 226, 226)),
-            ("stick".into(), (0, 114, 178)),
-            ("slip".into(), (230, 159, 0)),
-        ]),
+        colouring: Colouring::Classes(CLASSES.map(|(name, colour)| (name.into(), colour)).to_vec()),
         equal: false,
+        arrows: Vec::new(),
     })
 }

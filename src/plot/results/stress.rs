@@ -13,22 +13,28 @@ const BANDS: usize = 16;
 /// A part of the body that is flatter than this has a row of its own.
 const FLAT: f64 = 0.35;
 
-/// A component of `/bulk/stress`: its index, its symbol, its colours.
-const COMPONENTS: [(usize, &str, Ramp); 2] = [(1, "σ_{zz}", Ramp::Sequential), (3, "τ_{xz}", Ramp::Diverging)];
+/// A component of the stress: its symbol, its colours.
+const COMPONENTS: [(&str, Ramp); 2] = [("σ_{zz}", Ramp::Sequential), ("τ_{xz}", Ramp::Diverging)];
+/// Where they are among the components of `/bulk/stress` in the plane and in space, and how many these are.
+const PLANE: ([usize; 2], usize) = ([1, 3], 4);
+const SPACE: ([usize; 2], usize) = ([2, 5], 6);
 
 /// Normal stress and shear stress, side by side where there is room: at the end of the approach, then while sliding.
 pub fn sheet(run: &Run) -> Result<Sheet> {
     let bulk = Bulk::of(run)?;
     let frames = frames(run, &bulk.time);
     let unit = Unit::of(run);
-    let grids: Vec<Grid> = bulk.windows(&frames, run).into_iter().map(|window| Grid::new(&bulk, window)).collect();
+    let sections = frames.iter().map(|&frame| bulk.section(run, frame)).collect::<Result<Vec<_>>>()?;
+    let windows = bulk.windows(&frames, &sections, run);
+    let grids: Vec<Grid> = sections.iter().zip(windows).map(|(section, window)| Grid::new(section, window)).collect();
     let ratio = grids.iter().map(Grid::ratio).fold(0.0, f64::max);
-    let maps = COMPONENTS.map(|(component, symbol, ramp)| {
-        let raster = |(frame, grid): (&usize, &Grid)| {
-            let stress = bulk.component(*frame, component).map(|stress| stress / unit.value);
-            grid.raster(&bulk, &stress.collect::<Vec<_>>())
+    let maps = [0, 1].map(|component| {
+        let (symbol, ramp) = COMPONENTS[component];
+        let raster = |((frame, section), grid): ((&usize, &Section), &Grid)| {
+            let stress = bulk.component(section, *frame, component).map(|stress| stress / unit.value);
+            grid.raster(section, &stress.collect::<Vec<_>>(), bulk.period)
         };
-        let rasters: Vec<Vec<f64>> = frames.iter().zip(&grids).map(raster).collect();
+        let rasters: Vec<Vec<f64>> = frames.iter().zip(&sections).zip(&grids).map(raster).collect();
         // The same levels at all times, so that they can be compared.
         let all = rasters.iter().flatten().filter(|value| !value.is_nan());
         let ends = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
@@ -38,12 +44,13 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
     for (i, (&frame, grid)) in frames.iter().zip(&grids).enumerate() {
         for (symbol, rasters, colouring) in &maps {
             panels.push(Panel::Map(Map {
-                title: format!("{symbol} at {}", moment(run, bulk.time[frame])),
+                title: format!("{symbol} at {}{}", moment(run, bulk.time[frame]), sections[i].place),
                 x: Axis::linear("x, m"),
                 y: Axis::linear("z, m"),
                 raster: Raster { x: grid.x, y: grid.z, columns: grid.columns, values: rasters[i].clone() },
                 colouring: colouring.clone(),
                 equal: true,
+                arrows: Vec::new(),
             }));
         }
     }
@@ -55,7 +62,7 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
 
 /// t = 10 s, or s/λ = 0.5 while sliding.
 fn moment(run: &Run, time: f64) -> String {
-    match (run.slid(time), run.period()) {
+    match (run.slid(time), run.period().filter(|_| !run.scene.is_in_space())) {
         (0.0, _) => format!("t = {} s", short(time, 4)),
         (slid, Some(period)) => format!("s = {} λ", short(slid / period, 3)),
         (slid, None) => format!("s = {} m", short(slid, 3)),
@@ -73,11 +80,28 @@ fn frames(run: &Run, time: &[f64]) -> Vec<usize> {
 /// The mesh and the stress in it.
 struct Bulk {
     time: Vec<f64>,
-    nodes: Vec<[f64; 2]>,
-    cells: Vec<[usize; 4]>,
+    /// x, z of each node, in space x, y, z, m.
+    coordinates: Field,
+    /// Nodes of each cell.
+    cells: Field,
     stress: Field,
+    /// Where the components of the stress are, and how many there are.
+    components: ([usize; 2], usize),
     /// After which the body is itself again along x, m; none = it does not.
     period: Option<f64>,
+}
+
+/// A plane of x and z: all of a plane body, the sides of cells in it of one in space.
+struct Section {
+    /// x and z, m.
+    nodes: Vec<[f64; 2]>,
+    /// Which node of the file each is.
+    named: Vec<usize>,
+    cells: Vec<[usize; 4]>,
+    /// In space, where the contact is deepest along x, m.
+    centre: Option<f64>,
+    /// Where it is, for a title; empty in the plane.
+    place: String,
 }
 
 impl Bulk {
@@ -88,54 +112,104 @@ impl Bulk {
             let rows = found.rows;
             run.checked(&format!("bulk/{name}"), found, (rows, columns))
         };
-        let (time, coordinates, cells) = (read("time", 1)?, read("coordinates", 2)?, read("cells", 4)?);
+        let (axes, corners, components) = if run.scene.is_in_space() { (3, 8, SPACE) } else { (2, 4, PLANE) };
+        let (time, coordinates, cells) = (read("time", 1)?, read("coordinates", axes)?, read("cells", corners)?);
         let count = coordinates.rows;
-        let stress = run.checked("bulk/stress", field("stress")?, (time.rows, 4 * count))?;
+        let stress = run.checked("bulk/stress", field("stress")?, (time.rows, components.1 * count))?;
         let known = |node: &&f64| **node >= 0.0 && **node < count as f64 && node.fract() == 0.0;
         if let Some(node) = cells.values.iter().find(|node| !known(node)) {
             let reason = format!("is damaged: /bulk/cells names node {node} of {count}");
             return Err(Error::file(&run.path, reason));
         }
-        Ok(Self {
-            time: time.values,
-            nodes: coordinates.values.chunks_exact(2).map(|node| [node[0], node[1]]).collect(),
-            cells: cells.values.chunks_exact(4).map(|c| [0, 1, 2, 3].map(|i| c[i] as usize)).collect(),
-            stress,
-            period: run.scene.period(),
-        })
+        Ok(Self { time: time.values, coordinates, cells, stress, components, period: run.scene.period() })
     }
 
-    /// A component of the stress at each node, Pa.
-    fn component(&self, frame: usize, component: usize) -> impl Iterator<Item = f64> {
-        self.stress.row(frame).iter().skip(component).step_by(4).copied()
+    /// What is shown at a frame: in space the plane of nodes nearest to where the contact is deepest then.
+    fn section(&self, run: &Run, frame: usize) -> Result<Section> {
+        let nodes = (0..self.coordinates.rows).map(|node| {
+            let row = self.coordinates.row(node);
+            [row[0], row[row.len() - 1]]
+        });
+        let nodes: Vec<[f64; 2]> = nodes.collect();
+        let cells = self.cells.values.chunks_exact(self.cells.columns.max(1));
+        if !run.scene.is_in_space() {
+            let cells = cells.map(|c| [0, 1, 2, 3].map(|i| c[i] as usize)).collect();
+            let named = (0..nodes.len()).collect();
+            return Ok(Section { nodes, named, cells, centre: None, place: String::new() });
+        }
+        let [x, y] = super::space::Plain::of(run)?.deepest_at(self.time[frame]);
+        let across: Vec<f64> = self.coordinates.values.chunks_exact(3).map(|node| node[1]).collect();
+        let at = across[super::nearest(&across, y)];
+        let mut section = Section {
+            nodes: Vec::new(),
+            named: Vec::new(),
+            cells: Vec::new(),
+            centre: Some(x),
+            place: format!(", y = {} m", short(at, 3)),
+        };
+        let mut shown = vec![None; across.len()];
+        for cell in cells {
+            let side = cell.iter().map(|node| *node as usize).filter(|node| across[*node] == at);
+            let Some(side) = around(side.collect(), &nodes) else { continue };
+            let corners = side.map(|node| {
+                *shown[node].get_or_insert_with(|| {
+                    section.nodes.push(nodes[node]);
+                    section.named.push(node);
+                    section.nodes.len() - 1
+                })
+            });
+            section.cells.push(corners);
+        }
+        Ok(section)
     }
 
-    /// The least and the largest coordinate.
-    fn ends(&self, i: usize) -> (f64, f64) {
-        let of = |(low, high): (f64, f64), node: &[f64; 2]| (low.min(node[i]), high.max(node[i]));
-        self.nodes.iter().fold((f64::INFINITY, f64::NEG_INFINITY), of)
+    /// Of [`COMPONENTS`], the stress at each node of a section, Pa.
+    fn component(&self, section: &Section, frame: usize, component: usize) -> impl Iterator<Item = f64> {
+        let (row, (at, count)) = (self.stress.row(frame), self.components);
+        section.named.iter().map(move |node| row[count * node + at[component]])
     }
 
-    /// What is shown along x of each frame: a period about the middle of the way of the contact; of another body the part
-    /// that is pressed, and its depth on either side.
-    fn windows(&self, frames: &[usize], run: &Run) -> Vec<(f64, f64)> {
+    /// What is shown along x of each frame: a period about the middle of the way of the contact, in space about the contact; of
+    /// another body the part that is pressed, and its depth on either side.
+    fn windows(&self, frames: &[usize], sections: &[Section], run: &Run) -> Vec<(f64, f64)> {
         if let Some(period) = self.period {
             let slid = frames.iter().map(|&frame| run.slid(self.time[frame]));
             let (low, high) = slid.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (a.min(s), b.max(s)));
             // Quarters of a period, so that the ticks of the axis stay where they are expected.
-            let middle = (2.0 * (low + high) / period).round() * 0.25 * period;
-            return vec![(middle - 0.5 * period, middle + 0.5 * period); frames.len()];
+            let quarters = |middle: f64| (4.0 * middle / period).round() * 0.25 * period;
+            let middle = |section: &Section| quarters(section.centre.unwrap_or(0.5 * (low + high)));
+            let window = |section: &Section| (middle(section) - 0.5 * period, middle(section) + 0.5 * period);
+            return sections.iter().map(window).collect();
         }
-        let (x, z) = (self.ends(0), self.ends(1));
-        let window = |&frame: &usize| {
-            let least = 0.1 * self.component(frame, 1).fold(0.0f64, f64::min);
-            let pressed = self.nodes.iter().zip(self.component(frame, 1)).filter(|(_, s)| *s < least);
+        let window = |(&frame, section): (&usize, &Section)| {
+            let (x, z) = (section.ends(0), section.ends(1));
+            let least = 0.1 * self.component(section, frame, 0).fold(0.0f64, f64::min);
+            let pressed = section.nodes.iter().zip(self.component(section, frame, 0)).filter(|(_, s)| *s < least);
             let ends = |(low, high): (f64, f64), x: f64| (low.min(x), high.max(x));
             let (low, high) = pressed.map(|(node, _)| node[0]).fold((f64::INFINITY, f64::NEG_INFINITY), ends);
             let depth = z.1 - z.0;
             if low <= high { ((low - depth).max(x.0), (high + depth).min(x.1)) } else { x }
         };
-        frames.iter().map(window).collect()
+        frames.iter().zip(sections).map(window).collect()
+    }
+}
+
+/// The four corners of a side, one after the other around its middle; none of what has not four.
+fn around(mut side: Vec<usize>, nodes: &[[f64; 2]]) -> Option<[usize; 4]> {
+    if side.len() != 4 {
+        return None;
+    }
+    let middle = [0, 1].map(|i| side.iter().map(|node| nodes[*node][i]).sum::<f64>() / 4.0);
+    let angle = |node: &usize| (nodes[*node][1] - middle[1]).atan2(nodes[*node][0] - middle[0]);
+    side.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
+    side.first_chunk().copied()
+}
+
+impl Section {
+    /// The least and the largest coordinate.
+    fn ends(&self, i: usize) -> (f64, f64) {
+        let of = |(low, high): (f64, f64), node: &[f64; 2]| (low.min(node[i]), high.max(node[i]));
+        self.nodes.iter().fold((f64::INFINITY, f64::NEG_INFINITY), of)
     }
 }
 
@@ -148,8 +222,8 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(bulk: &Bulk, x: (f64, f64)) -> Self {
-        let z = bulk.ends(1);
+    fn new(section: &Section, x: (f64, f64)) -> Self {
+        let z = section.ends(1);
         let (wide, high) = (x.1 - x.0, z.1 - z.0);
         let fields = |length: f64| ((FINE as f64 * length / wide.max(high)).round() as usize).clamp(2, FINE);
         Self { x, z, columns: fields(wide), rows: fields(high) }
@@ -161,13 +235,13 @@ impl Grid {
     }
 
     /// Linear over the two halves of each cell, and of its images in a body that repeats itself.
-    fn raster(&self, bulk: &Bulk, values: &[f64]) -> Vec<f64> {
+    fn raster(&self, section: &Section, values: &[f64], period: Option<f64>) -> Vec<f64> {
         let mut raster = vec![f64::NAN; self.columns * self.rows];
-        for cell in &bulk.cells {
+        for cell in &section.cells {
             for half in [[0, 1, 2], [0, 2, 3]] {
                 let corners = half.map(|i| cell[i]);
-                let at = corners.map(|node| bulk.nodes[node]);
-                for offset in self.offsets(bulk.period, at[0][0]) {
+                let at = corners.map(|node| section.nodes[node]);
+                for offset in self.offsets(period, at[0][0]) {
                     let image = at.map(|[x, z]| [x + offset, z]);
                     self.fill(&mut raster, image, corners.map(|node| values[node]));
                 }

@@ -25,6 +25,9 @@ struct Stage {
 
 /// A panel for each stage: the shear traction between the bounds that the pressure sets it, or the pressure alone.
 pub fn sheet(run: &Run) -> Result<Sheet> {
+    if run.scene.is_in_space() {
+        return super::space::sections::tractions(run);
+    }
     let face = run.face()?;
     let shear = face.field("shear")?;
     let unit = Unit::of(run);
