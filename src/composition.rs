@@ -43,7 +43,7 @@ pub use estimate::Estimate;
 pub use inputs::inputs;
 pub use pressed::PressedEnd;
 pub use profile::{Elevations, Finest, Shape, elevations, measured, reach, seam_doubt, shape};
-pub use steady::{last_velocity, steady};
+pub use steady::{heading, last_velocity, steady};
 
 /// A scene made ready to run.
 pub struct Problem {

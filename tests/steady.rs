@@ -54,7 +54,9 @@ fn named(rule: PoissonRule) -> &'static str {
 /// The steady states of a scene with changes.
 fn states(changes: &[String], velocities: &[f64]) -> Vec<State> {
     let scene = scene::read(SCENE, &Source { file: "scene.toml".into(), overrides: changes.to_vec() }).unwrap();
-    let mut sliding = composition::steady(&SimpleCommunicator::self_comm(), &scene, Path::new("scene.toml")).unwrap();
+    let heading = composition::heading(&scene, None).unwrap();
+    let world = SimpleCommunicator::self_comm();
+    let mut sliding = composition::steady(&world, &scene, Path::new("scene.toml"), heading).unwrap();
     sliding.states(velocities).unwrap()
 }
 
@@ -62,7 +64,7 @@ fn states(changes: &[String], velocities: &[f64]) -> Vec<State> {
 /// both rules, rigid and with a penalty, under an approach and under a force, one velocity from the one before.
 fn the_oracles_kernel_gives_the_oracles_contact() {
     const NODES: usize = 128;
-    let spectrum = Spectrum::new(NODES);
+    let spectrum = Spectrum::new(&[NODES]);
     let spacing = 1.0 / NODES as f64;
     let elevation: Vec<f64> = (0..NODES).map(|i| SURFACE.at(spacing * i as f64).0).collect();
     for (rule, softness, load) in [
@@ -90,7 +92,8 @@ fn the_oracles_kernel_gives_the_oracles_contact() {
             };
             let (spectrum, kernel) = (&spectrum, &kernel);
             let shear = |p: f64| [0.2 * p, 0.2];
-            let contact = Contact { spectrum, kernel, softness, elevation: &elevation, spacing, shear: &shear, held };
+            let contact =
+                Contact { spectrum, kernel, softness, elevation: &elevation, area: spacing, shear: &shear, held };
             let found = contact.solve(last.as_ref()).unwrap();
             let highest = exact.pressure.iter().fold(0.0, |most: f64, p| most.max(*p));
             let apart = found.pressure.iter().zip(&exact.pressure).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);

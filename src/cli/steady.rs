@@ -28,6 +28,9 @@ pub struct SteadyArguments {
     /// Velocities from one to another, m/s, so many to a decade [default: that of the last phase]
     #[arg(long, value_name = "FROM:TO:PER_DECADE")]
     velocities: Option<Ladder>,
+    /// In space, where it slides: degrees from +x towards +y [default: as in the last phase, or along x]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    direction: Option<f64>,
     /// Where the results go [default: the scene's stem + .h5, in the current directory]
     #[arg(long, value_name = "FILE.h5")]
     out: Option<PathBuf>,
@@ -82,7 +85,8 @@ fn solve((session, world): (&Session, &SimpleCommunicator), arguments: &SteadyAr
         Some(Ladder(velocities)) => velocities.clone(),
         None => vec![composition::last_velocity(&scene, file)?],
     };
-    let mut sliding = composition::steady(world, &scene, file)?;
+    let heading = composition::heading(&scene, arguments.direction)?;
+    let mut sliding = composition::steady(world, &scene, file, heading)?;
     let out = arguments.out.clone().unwrap_or_else(|| default_output(file));
     let states = sliding.curve(world, &velocities)?;
     let mine = if world.rank() == 0 {
@@ -92,7 +96,7 @@ fn solve((session, world): (&Session, &SimpleCommunicator), arguments: &SteadyAr
     };
     agree(world, mine)?;
     if world.rank() == 0 {
-        tell(table(&states));
+        tell(table(&sliding, &states));
         let count = states.len();
         tell(format_args!(
             "{count} velocit{} in {}",
@@ -121,19 +125,24 @@ fn record(
         started,
         warnings: Vec::new(),
     };
-    let curve = Curve { times: sliding.times(), x: &sliding.places(), states };
+    let curve = Curve { times: sliding.times(), face: &sliding.face, heading: sliding.heading.into(), states };
     write(out, &metadata, &curve)
 }
 
-/// One line for each velocity, or for some of many.
-fn table(states: &[State]) -> String {
+/// One line for each velocity, or for some of many; forces along the velocity.
+fn table(sliding: &Sliding, states: &[State]) -> String {
     const LINES: usize = 40;
-    let head = ["v, m/s", "D, m", "N, N/m", "Q, N/m", "hyst., N/m", "friction", "contact"];
+    let unit = if sliding.face.in_space { "N" } else { "N/m" };
+    let forces = ["N", "Q", "hyst."].map(|name| format!("{name}, {unit}"));
+    let [normal, tangential, hysteretic] = &forces;
+    let head = ["v, m/s", "D, m", normal, tangential, hysteretic, "friction", "contact"];
     let mut text = head.map(|title| format!("{title:>11}")).join(" ");
     let every = states.len().div_ceil(LINES);
     for state in states.iter().step_by(every.max(1)) {
-        let State { velocity, approach, normal_force, tangential_force, hysteretic_force, contact_fraction, .. } =
-            state;
+        let State { velocity, approach, normal_force, contact_fraction, across, .. } = state;
+        let along = |x: f64, y: f64| sliding.heading.x * x + sliding.heading.y * y;
+        let tangential_force = along(state.tangential_force, across[0]);
+        let hysteretic_force = along(state.hysteretic_force, across[1]);
         let friction = (tangential_force + hysteretic_force) / normal_force;
         text += &format!(
             "\n{velocity:>11.4e} {approach:>11.4e} {normal_force:>11.4e} {tangential_force:>11.4e} {hysteretic_force:>11.3e} \

@@ -189,6 +189,7 @@ pub(super) fn in_space(units: &'static str, long_name: &str) -> (&'static str, S
     let units = match units {
         "N/m" => "N",
         "J/m" => "J",
+        "W/m" => "W",
         other => other,
     };
     (units, long_name.replace(", per unit thickness", "").replace(" per unit thickness", "").replace("+x", "+x and +y"))

@@ -12,7 +12,7 @@ use hdf5::{Dataset, H5Type, Location};
 
 use super::columns::{self, BULK, Components, Value};
 use super::xdmf::MeshSize;
-use super::{BulkPlan, Metadata, Plan, Status};
+use super::{BulkPlan, FacePlan, Metadata, Plan, Status};
 use crate::error::{Error, Result, plain};
 
 /// The metadata of a file stands in one block of this size, so that one small write reaches all extents.
@@ -43,7 +43,7 @@ struct Described {
 }
 
 /// Units and words of a column or field.
-fn about((units, long_name): (&'static str, &'static str), in_space: bool) -> (&'static str, String) {
+pub(super) fn about((units, long_name): (&'static str, &'static str), in_space: bool) -> (&'static str, String) {
     if in_space { columns::in_space(units, long_name) } else { (units, long_name.to_owned()) }
 }
 
@@ -173,16 +173,22 @@ impl<'a> Skeleton<'a> {
             let about = ("m", "undeformed coordinate along the contact face");
             return self.fixed((GROUP, "x"), &plan.face.coordinates, about, &[("x", nodes)]);
         }
+        self.nodes(GROUP, &plan.face)?;
+        self.names(GROUP, Components::Axes, axes)
+    }
+
+    /// The nodes of a face of two directions, and the names of these.
+    pub(super) fn nodes(&mut self, group: &str, face: &FacePlan) -> hdf5::Result<()> {
+        let nodes = face.nodes();
         let about = ("m", "undeformed coordinates along the contact face");
-        self.fixed((GROUP, "coordinates"), &plan.face.coordinates, about, &[("node", nodes), ("direction", 2)])?;
-        if let (Some(made), false) = (self.made.last(), plan.face.grid.is_empty()) {
-            let grid: Vec<i64> = plan.face.grid.iter().map(|&count| count as i64).collect();
+        self.fixed((group, "coordinates"), &face.coordinates, about, &[("node", nodes), ("direction", 2)])?;
+        if let (Some(made), false) = (self.made.last(), face.grid.is_empty()) {
+            let grid: Vec<i64> = face.grid.iter().map(|&count| count as i64).collect();
             made.set.new_attr::<i64>().shape(grid.len()).create("grid")?.write_raw(&grid)?;
         }
         let indices: Vec<i64> = (0..nodes as i64).collect();
-        self.fixed((GROUP, "node"), &indices, ("1", "index of a node"), &[("node", nodes)])?;
-        self.names(GROUP, Components::Along, axes)?;
-        self.names(GROUP, Components::Axes, axes)
+        self.fixed((group, "node"), &indices, ("1", "index of a node"), &[("node", nodes)])?;
+        self.names(group, Components::Along, face.axes())
     }
 
     /// The names of components, as the scale of their dimension.
@@ -245,7 +251,7 @@ impl<'a> Skeleton<'a> {
         &mut self,
         (group, name): (&str, &str),
         values: &[T],
-        about: (&'static str, &'static str),
+        about: (&'static str, impl Into<String>),
         dimensions: &[(&str, usize)],
     ) -> hdf5::Result<()> {
         let (scales, shape): (Vec<&str>, Vec<usize>) = dimensions.iter().copied().unzip();

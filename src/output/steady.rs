@@ -4,30 +4,32 @@ use std::path::Path;
 use std::time::SystemTime;
 
 use super::scratch::scratch;
-use super::skeleton::{Purpose, Skeleton, root_attributes};
-use super::{Metadata, Status, ours};
+use super::skeleton::{Purpose, Skeleton, about, root_attributes};
+use super::{FacePlan, Metadata, Status, ours};
 use crate::error::{Error, Result, plain};
 
 /// The steady state at a velocity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
-    /// Of the indenter along +x, m/s.
+    /// Of the indenter along +x, in space along the heading, m/s.
     pub velocity: f64,
     /// D, m
     pub approach: f64,
-    /// N/m
+    /// N/m, in space N.
     pub normal_force: f64,
-    /// N/m, on the layer.
+    /// N/m, on the layer; in space N, along x.
     pub tangential_force: f64,
-    /// The integral of p dh/dx, N/m.
+    /// The integral of p dh/dx, N/m, in space N.
     pub hysteretic_force: f64,
+    /// In space the same two along y, N.
+    pub across: [f64; 2],
     /// Share of the face.
     pub contact_fraction: f64,
-    /// What each arm dissipates, W/m.
+    /// What each arm dissipates, W/m, in space W.
     pub arm_dissipation: Vec<f64>,
     /// Of each node, Pa.
     pub pressure: Vec<f64>,
-    /// Of each node, on the layer, Pa.
+    /// Of each node, on the layer, Pa; in space along x and along y.
     pub shear: Vec<f64>,
     /// Of each node, m; negative where the indenter penetrates.
     pub gap: Vec<f64>,
@@ -37,26 +39,28 @@ pub struct State {
 pub struct Curve<'a> {
     /// The relaxation times of the arms, s.
     pub times: &'a [f64],
-    /// The nodes along the face, m.
-    pub x: &'a [f64],
+    /// The nodes of the face.
+    pub face: &'a FacePlan,
+    /// Where a positive velocity points, along x and y.
+    pub heading: [f64; 2],
     /// The states, in the order of their velocities.
     pub states: &'a [State],
 }
 
 const GROUP: &str = "steady";
-/// Name, unit, words, and where a number is in a state.
-type Column = (&'static str, &'static str, &'static str, fn(&State) -> f64);
+/// Name, unit, words, and where a number is in a state; of a vector its two components.
+type Column = (&'static str, &'static str, &'static str, fn(&State) -> f64, Option<fn(&State) -> f64>);
 /// The same of a field along the face.
 type Field = (&'static str, &'static str, &'static str, fn(&State) -> &[f64]);
 
 #[rustfmt::skip]
 const COLUMNS: [Column; 6] = [
-    ("velocity", "m/s", "velocity of the indenter along +x", |s| s.velocity),
-    ("approach", "m", "normal approach of the indenter", |s| s.approach),
-    ("normal_force", "N/m", "normal force per unit thickness, compression positive", |s| s.normal_force),
-    ("tangential_force", "N/m", "tangential force on the layer per unit thickness, positive along +x", |s| s.tangential_force),
-    ("hysteretic_force", "N/m", "integral of pressure times slope of the profile, per unit thickness", |s| s.hysteretic_force),
-    ("contact_fraction", "1", "share of the contact face in contact", |s| s.contact_fraction),
+    ("velocity", "m/s", "velocity of the indenter", |s| s.velocity, None),
+    ("approach", "m", "normal approach of the indenter", |s| s.approach, None),
+    ("normal_force", "N/m", "normal force per unit thickness, compression positive", |s| s.normal_force, None),
+    ("tangential_force", "N/m", "tangential force on the layer per unit thickness, positive along +x", |s| s.tangential_force, Some(|s| s.across[0])),
+    ("hysteretic_force", "N/m", "integral of pressure times slope of the profile, per unit thickness", |s| s.hysteretic_force, Some(|s| s.across[1])),
+    ("contact_fraction", "1", "share of the contact face in contact", |s| s.contact_fraction, None),
 ];
 
 #[rustfmt::skip]
@@ -88,7 +92,7 @@ pub fn write(path: &Path, metadata: &Metadata, curve: &Curve<'_>) -> Result<()> 
     done
 }
 
-fn fill(path: &Path, metadata: &Metadata, Curve { times, x, states }: &Curve<'_>) -> hdf5::Result<()> {
+fn fill(path: &Path, metadata: &Metadata, Curve { times, face, heading, states }: &Curve<'_>) -> hdf5::Result<()> {
     let file = hdf5::File::create(path)?;
     let seconds = SystemTime::now().duration_since(metadata.started).map_or(0.0, |took| took.as_secs_f64());
     root_attributes(&file, metadata, (Status::Complete, seconds))?;
@@ -96,25 +100,40 @@ fn fill(path: &Path, metadata: &Metadata, Curve { times, x, states }: &Curve<'_>
     file.create_group("interface")?;
     let mut skeleton = Skeleton::new(&file, Purpose::Packed);
     let (velocity, arm) = (("velocity", states.len()), ("relaxation_time", times.len()));
-    for (name, unit, words, value) in COLUMNS {
-        let values: Vec<f64> = states.iter().map(value).collect();
-        skeleton.fixed((GROUP, name), &values, (unit, words), &[velocity])?;
+    let (node, direction) = ((if face.in_space { "node" } else { "x" }, face.nodes()), ("direction", 2));
+    for (name, unit, words, value, across) in COLUMNS {
+        let about = about((unit, words), face.in_space);
+        let list = |value: fn(&State) -> f64| states.iter().map(value).collect::<Vec<f64>>();
+        match across.filter(|_| face.in_space) {
+            None => skeleton.fixed((GROUP, name), &list(value), about, &[velocity])?,
+            Some(across) => {
+                let both: Vec<f64> = states.iter().flat_map(|state| [value(state), across(state)]).collect();
+                skeleton.fixed((GROUP, name), &both, about, &[velocity, direction])?;
+            }
+        }
     }
     skeleton.fixed((GROUP, "relaxation_time"), times, ("s", "relaxation time of each arm"), &[arm])?;
     let dissipated: Vec<f64> = states.iter().flat_map(|state| state.arm_dissipation.iter().copied()).collect();
     let words = "power that each arm dissipates, per unit thickness";
-    skeleton.fixed((GROUP, "arm_dissipation"), &dissipated, ("W/m", words), &[velocity, arm])?;
+    skeleton.fixed((GROUP, "arm_dissipation"), &dissipated, about(("W/m", words), face.in_space), &[velocity, arm])?;
     for (name, unit, words, field) in FIELDS {
         let values: Vec<f64> = states.iter().flat_map(|state| field(state).iter().copied()).collect();
-        skeleton.fixed((GROUP, name), &values, (unit, words), &[velocity, ("x", x.len())])?;
+        let vector = face.in_space && name == "shear";
+        let dimensions = [velocity, node, direction];
+        let about = about((unit, words), face.in_space);
+        skeleton.fixed((GROUP, name), &values, about, &dimensions[..if vector { 3 } else { 2 }])?;
     }
-    skeleton.fixed(
-        (GROUP, "x"),
-        x,
-        ("m", "coordinate along the contact face, in the frame of the indenter"),
-        &[("x", x.len())],
-    )?;
-    skeleton.fixed(("interface", "x"), x, ("m", "undeformed coordinate along the contact face"), &[("x", x.len())])?;
+    if face.in_space {
+        let words = "where a positive velocity points, of length 1";
+        skeleton.fixed((GROUP, "heading"), heading, ("1", words), &[direction])?;
+        skeleton.nodes(GROUP, face)?;
+        skeleton.nodes("interface", face)?;
+    } else {
+        let words = "coordinate along the contact face, in the frame of the indenter";
+        skeleton.fixed((GROUP, "x"), &face.coordinates, ("m", words), &[node])?;
+        let words = "undeformed coordinate along the contact face";
+        skeleton.fixed(("interface", "x"), &face.coordinates, ("m", words), &[node])?;
+    }
     skeleton.finish()?;
     file.close()
 }

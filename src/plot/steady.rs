@@ -18,6 +18,8 @@ pub struct Curves {
     results: Results,
     /// m/s
     velocity: Vec<f64>,
+    /// Where it points, in space.
+    heading: Option<[f64; 2]>,
 }
 
 /// A figure by its name, and what it needs.
@@ -28,6 +30,8 @@ pub struct Kind {
     pub shows: &'static str,
     /// Of how many velocities at least.
     least: usize,
+    /// Whether it is of the plane alone.
+    in_plane: bool,
     sheet: fn(&Curves) -> Result<Sheet>,
 }
 
@@ -37,13 +41,21 @@ pub const FIGURES: [Kind; 3] = [
         name: "friction",
         shows: "friction, hysteretic and in all, approach or load, and contact against the velocity",
         least: 2,
+        in_plane: false,
         sheet: friction,
     },
-    Kind { name: "dissipation", shows: "which arms dissipate, against the velocity", least: 2, sheet: dissipation },
+    Kind {
+        name: "dissipation",
+        shows: "which arms dissipate, against the velocity",
+        least: 2,
+        in_plane: false,
+        sheet: dissipation,
+    },
     Kind {
         name: "steady",
         shows: "pressure and gap along the face, in the frame of the indenter",
         least: 1,
+        in_plane: true,
         sheet: fields,
     },
 ];
@@ -53,6 +65,10 @@ impl Kind {
     pub fn of(&self, curves: &Curves) -> Result<Sheet> {
         match self.possible(curves) {
             true => (self.sheet)(curves),
+            false if self.in_plane && curves.heading.is_some() => {
+                let reason = format!("the figure {} is of the plane; draw /steady/pressure and /steady/gap", self.name);
+                Err(Error::file(&curves.path, reason))
+            }
             false => {
                 let reason = format!("the figure {} needs several velocities: mpjr steady --velocities", self.name);
                 Err(Error::file(&curves.path, reason))
@@ -62,7 +78,7 @@ impl Kind {
 
     /// Whether the file has what the figure shows.
     pub fn possible(&self, curves: &Curves) -> bool {
-        curves.velocity.len() >= self.least
+        curves.velocity.len() >= self.least && !(self.in_plane && curves.heading.is_some())
     }
 }
 
@@ -74,7 +90,11 @@ impl Curves {
             return Ok(None);
         }
         let velocity = results.steady("velocity")?.values;
-        Ok(Some(Self { path: path.to_owned(), results, velocity }))
+        let heading = match results.has("steady/heading") {
+            true => results.steady("heading")?.values.first_chunk().copied(),
+            false => None,
+        };
+        Ok(Some(Self { path: path.to_owned(), results, velocity, heading }))
     }
 
     /// A dataset of as many numbers for each velocity.
@@ -91,6 +111,18 @@ impl Curves {
         Ok(self.field(name, 1)?.values)
     }
 
+    /// A force along the face; in space what of it is along the velocity.
+    fn force(&self, name: &str) -> Result<Vec<f64>> {
+        let Some([x, y]) = self.heading else { return self.column(name) };
+        let both = self.field(name, 2)?;
+        Ok((0..both.rows).map(|row| x * both.row(row)[0] + y * both.row(row)[1]).collect())
+    }
+
+    /// The hysteretic force in symbols.
+    fn slope(&self) -> &'static str {
+        if self.heading.is_some() { "∫ p ∂h/∂s dA" } else { "∫ p ∂h/∂x dx" }
+    }
+
     /// Values against the velocity.
     fn against(&self, label: &str, values: impl IntoIterator<Item = f64>) -> Curve {
         Curve::line(label, self.velocity.iter().copied().zip(values).collect(), PALETTE[0])
@@ -102,23 +134,27 @@ fn velocities() -> Axis {
 }
 
 fn friction(curves: &Curves) -> Result<Sheet> {
-    let [normal, tangential, hysteretic] =
-        ["normal_force", "tangential_force", "hysteretic_force"].map(|name| curves.column(name));
-    let (normal, tangential, hysteretic) = (normal?, tangential?, hysteretic?);
+    let normal = curves.column("normal_force")?;
+    let (tangential, hysteretic) = (curves.force("tangential_force")?, curves.force("hysteretic_force")?);
     let (approach, contact) = (curves.column("approach")?, curves.column("contact_fraction")?);
     let figure = |title: &str, label: &str, values: Vec<f64>| {
         Figure::new(title, velocities(), Axis::linear(label), vec![curves.against("", values)])
     };
     let over = |force: &[f64]| force.iter().zip(&normal).map(|(force, normal)| force / normal).collect::<Vec<_>>();
     let all: Vec<f64> = tangential.iter().zip(&hysteretic).map(|(q, more)| q + more).collect();
+    let slope = curves.slope();
     let held = approach.iter().all(|value| *value == approach[0]);
     let third = match held {
-        true => figure("Load under the held approach", "N, N/m", normal.clone()),
+        true => figure(
+            "Load under the held approach",
+            if curves.heading.is_some() { "N, N" } else { "N, N/m" },
+            normal.clone(),
+        ),
         false => figure("Approach under the held load", "D, m", approach),
     };
     let figures = vec![
-        figure("Hysteretic friction", "∫ p ∂h/∂x dx / N", over(&hysteretic)),
-        figure("Total friction", "(Q + ∫ p ∂h/∂x dx) / N", over(&all)),
+        figure("Hysteretic friction", &format!("{slope} / N"), over(&hysteretic)),
+        figure("Total friction", &format!("(Q + {slope}) / N"), over(&all)),
         third,
         figure("Contact", "share of the face", contact),
     ];
@@ -130,7 +166,7 @@ fn dissipation(curves: &Curves) -> Result<Sheet> {
     let times = curves.results.steady("relaxation_time")?.values;
     let power = curves.field("arm_dissipation", times.len())?;
     let normal = curves.column("normal_force")?;
-    let hysteretic = curves.column("hysteretic_force")?;
+    let hysteretic = curves.force("hysteretic_force")?;
     let share = |row: usize, power: f64| power / (normal[row] * curves.velocity[row].abs());
     let rows = || 0..curves.velocity.len();
     let colours = Ramp::lines(times.len());
@@ -138,7 +174,7 @@ fn dissipation(curves: &Curves) -> Result<Sheet> {
         curves.against("", rows().map(|row| share(row, power.row(row)[arm]))).coloured(*colour)
     };
     let all = curves.against("all arms", rows().map(|row| share(row, power.row(row).iter().sum())));
-    let slope = curves.against("∫ p ∂h/∂x dx / N", rows().map(|row| hysteretic[row] / normal[row]));
+    let slope = curves.against(&format!("{} / N", curves.slope()), rows().map(|row| hysteretic[row] / normal[row]));
     let mut drawn = vec![slope.coloured(GREY).stroked(Stroke::Broad), all.coloured(REFERENCE).stroked(Stroke::Dashed)];
     drawn.extend(colours.iter().enumerate().map(of_arm));
     let entries = times.iter().map(|time| scientific(*time, 3)).zip(colours).collect();

@@ -20,7 +20,7 @@ use crate::error::{Error, Result};
 pub struct Kernel {
     /// C_n
     pub normal: Vec<Complex<f64>>,
-    /// C_t
+    /// C_t, of shear along the velocity.
     pub shear: Vec<Complex<f64>>,
 }
 
@@ -29,7 +29,7 @@ pub struct Kernel {
 pub enum Held {
     /// The approach D, m.
     Approach(f64),
-    /// The normal force over the period, N/m.
+    /// The normal force over the period, N/m, in space N.
     Force(f64),
 }
 
@@ -43,8 +43,8 @@ pub struct Contact<'a> {
     pub softness: f64,
     /// h at each node, m.
     pub elevation: &'a [f64],
-    /// Of the nodes, m.
-    pub spacing: f64,
+    /// Of the face at each node, m, in space m^2.
+    pub area: f64,
     /// q, Pa, and dq/dp under a pressure.
     pub shear: &'a dyn Fn(f64) -> [f64; 2],
     /// What is held.
@@ -153,7 +153,7 @@ impl Contact<'_> {
         let mut change = solve(&-gather(&self.closing(*approach, pressure)?))?;
         if let Held::Force(force) = self.held {
             let lowered = solve(&DVector::from_element(active.len(), 1.0))?;
-            let missing = force / self.spacing - pressure.iter().sum::<f64>() - change.sum();
+            let missing = force / self.area - pressure.iter().sum::<f64>() - change.sum();
             let down = missing / lowered.sum();
             *approach += down;
             change += lowered * down;

@@ -1,8 +1,9 @@
 //! Steady gross sliding of a periodic layer: no steps, one contact problem for each velocity.
 //!
-//! In the frame of the indenter nothing changes, and each wave of the tractions meets the layer at a frequency of its own
+//! In the plane, or in space along any direction. In the frame of the indenter nothing changes, and each wave of the tractions meets the layer at a frequency of its own
 //! ([`crate::solve::Travelling`]). What slides everywhere has q = f(v, p) p, so that the pressures alone are unknown ([`contact`]).
-//! The slip rate is that of the indenter: what the face's own strain adds to it, a part in a thousand, is left out.
+//! The slip rate is that of the indenter: what the face's own strain adds to it, a part in a thousand, is left out, and with it what
+//! turns the friction away from the velocity.
 //!
 //! The layer is that of the scene's cells, on the waves that its nodes tell apart.
 
@@ -11,12 +12,13 @@ mod gmres;
 mod share;
 pub mod spectrum;
 
-use nalgebra::{Complex, Vector2};
+use nalgebra::{Complex, SMatrix, SVector, Vector2};
 
 use crate::error::Result;
 use crate::friction::{Circumstances, Lasting};
 use crate::interface::{self, Fields, Interface, Totals};
 use crate::loading::Placement;
+use crate::output::FacePlan;
 pub use crate::output::steady::State;
 use crate::solve::{Moving, Travelling};
 
@@ -25,14 +27,21 @@ use spectrum::Spectrum;
 
 /// An indenter on a periodic layer.
 pub struct Sliding {
-    layer: Travelling,
-    interface: Interface<2>,
-    held: Held,
-    spectrum: Spectrum,
-    /// Of the nodes, m.
-    spacing: f64,
-    /// h at each node, m.
-    elevation: Vec<f64>,
+    on: Box<dyn OnLayer>,
+    /// The nodes of the face.
+    pub face: FacePlan,
+    /// Where a positive velocity points, along x and y, of length 1.
+    pub heading: Vector2<f64>,
+}
+
+/// The same in the plane or in space.
+trait OnLayer {
+    /// The relaxation times of the arms, s.
+    fn times(&self) -> &[f64];
+    /// The approach at first touch, m.
+    fn lowest(&self) -> f64;
+    /// The steady state at a velocity, m/s, from where another one was.
+    fn state(&mut self, velocity: f64, start: Option<&Tractions>) -> Result<(State, Tractions)>;
 }
 
 impl Sliding {
@@ -40,31 +49,37 @@ impl Sliding {
     ///
     /// # Errors
     /// A domain error where the profile is not known.
-    pub fn new(layer: Travelling, mut interface: Interface<2>, held: Held) -> Result<Self> {
+    pub fn new<const D: usize>(
+        (layer, mut interface): (Travelling<D>, Interface<D>),
+        (held, heading): (Held, Vector2<f64>),
+        face: FacePlan,
+    ) -> Result<Self> {
         interface.place(Placement::default())?;
         let elevation: Vec<f64> = (0..layer.nodes()).map(|i| interface.clearance(i, 0.0)).collect();
-        let spacing = interface.points().all().first().map_or(0.0, |point| point.weight);
-        Ok(Self { spectrum: Spectrum::new(layer.nodes()), layer, interface, held, spacing, elevation })
+        let area = interface.points().all().first().map_or(0.0, |point| point.weight);
+        let counts = if face.in_space { face.grid.clone() } else { vec![layer.nodes()] };
+        let on = Box::new(On { spectrum: Spectrum::new(&counts), layer, interface, held, heading, area, elevation });
+        Ok(Self { on, face, heading })
     }
 
     /// The relaxation times of the arms, s.
     pub fn times(&self) -> &[f64] {
-        self.layer.times()
+        self.on.times()
     }
 
     /// The approach at first touch, m.
     pub fn lowest(&self) -> f64 {
-        self.elevation.iter().copied().fold(f64::INFINITY, f64::min)
-    }
-
-    /// The coordinates of the nodes along the face, m.
-    pub fn places(&self) -> Vec<f64> {
-        self.interface.points().all().iter().map(|point| point.place.x).collect()
+        self.on.lowest()
     }
 
     /// How many nodes there are.
     pub fn nodes(&self) -> usize {
-        self.layer.nodes()
+        self.face.nodes()
+    }
+
+    /// Directions along the face.
+    fn directions(&self) -> usize {
+        if self.face.in_space { 2 } else { 1 }
     }
 
     /// The steady states at velocities, m/s, of one sign, each found from the one before.
@@ -75,22 +90,44 @@ impl Sliding {
         let mut states = Vec::with_capacity(velocities.len());
         let mut last = None;
         for &velocity in velocities {
-            let (state, tractions) = self.state(velocity, last.as_ref())?;
+            let (state, tractions) = self.on.state(velocity, last.as_ref())?;
             states.push(state);
             last = Some(tractions);
         }
         Ok(states)
     }
+}
+
+struct On<const D: usize> {
+    layer: Travelling<D>,
+    interface: Interface<D>,
+    held: Held,
+    heading: Vector2<f64>,
+    spectrum: Spectrum,
+    /// Of the face at each node, m or m^2.
+    area: f64,
+    /// h at each node, m.
+    elevation: Vec<f64>,
+}
+
+impl<const D: usize> OnLayer for On<D> {
+    fn times(&self) -> &[f64] {
+        self.layer.times()
+    }
+
+    fn lowest(&self) -> f64 {
+        self.elevation.iter().copied().fold(f64::INFINITY, f64::min)
+    }
 
     fn state(&mut self, velocity: f64, start: Option<&Tractions>) -> Result<(State, Tractions)> {
         let shear = |pressure: f64| self.shear(velocity, pressure);
-        let moving = self.layer.at(velocity)?;
+        let moving = self.layer.at(self.heading * velocity)?;
         let found = Contact {
             spectrum: &self.spectrum,
-            kernel: &kernel(&moving, self.spacing),
+            kernel: &kernel(&moving, self.heading, self.area),
             softness: self.interface.penalty().map_or(0.0, |penalty| 1.0 / penalty),
             elevation: &self.elevation,
-            spacing: self.spacing,
+            area: self.area,
             shear: &shear,
             held: self.held,
         }
@@ -108,16 +145,19 @@ impl Sliding {
             normal_force,
             tangential_force: tangential_force.x,
             hysteretic_force: hysteretic_force.x,
+            across: [tangential_force.y, hysteretic_force.y],
             contact_fraction,
             arm_dissipation,
             pressure,
-            shear: shear.iter().map(|q| q.x).collect(),
+            shear: shear.iter().flat_map(|q| q.iter().take(D - 1).copied().collect::<Vec<_>>()).collect(),
             gap,
         };
         Ok((state, found))
     }
+}
 
-    /// q of a node that slides, Pa, and dq/dp.
+impl<const D: usize> On<D> {
+    /// q of a node that slides along the heading, Pa, and dq/dp.
     fn shear(&self, velocity: f64, pressure: f64) -> [f64; 2] {
         let Some(law) = self.interface.friction() else { return [0.0; 2] };
         let at = Circumstances { pressure, dt: SECOND, resolution: 0.0, slid: 0.0 };
@@ -125,20 +165,29 @@ impl Sliding {
         [bound.value, bound.by_pressure].map(|value| value.copysign(value * velocity))
     }
 
-    /// The waves of the forces on the nodes, (g, f_z), N/m.
-    fn forces(&self, pressure: &[f64], shear: &[f64]) -> Result<Vec<Vector2<Complex<f64>>>> {
+    /// So much along the heading, as a vector.
+    fn along(&self, length: f64) -> SVector<f64, D> {
+        SVector::from_fn(|axis, _| if axis + 1 < D { self.heading[axis] * length } else { 0.0 })
+    }
+
+    /// The waves of the forces on the nodes, (g, f_z), N/m, in space N.
+    fn forces(&self, pressure: &[f64], shear: &[f64]) -> Result<Vec<SVector<Complex<f64>, D>>> {
         let (p, q) = (self.spectrum.waves(pressure.to_vec())?, self.spectrum.waves(shear.to_vec())?);
-        let force =
-            |(p, q): (Complex<f64>, Complex<f64>)| Vector2::new(q * -Complex::i(), -p) * Complex::from(self.spacing);
+        let force = |(p, q): (Complex<f64>, Complex<f64>)| {
+            SVector::from_fn(|axis, _| {
+                let traction = if axis + 1 < D { q * -Complex::i() * self.heading[axis] } else { -p };
+                traction * self.area
+            })
+        };
         Ok(p.into_iter().zip(q).map(force).collect())
     }
 
     /// Makes what was found the accepted state of the interface, after a second of sliding.
     fn commit(&mut self, velocity: f64, found: &Tractions, shear: &[f64]) -> Result<()> {
-        let slip = Vector2::new(velocity * SECOND, 0.0);
-        let state = |((before, p), (q, gap)): ((&interface::State<2>, &f64), (&f64, &f64))| interface::State {
+        let slip = self.along(velocity * SECOND);
+        let state = |((before, p), (q, gap)): ((&interface::State<D>, &f64), (&f64, &f64))| interface::State {
             pressure: p.max(0.0),
-            shear: Vector2::new(*q, 0.0),
+            shear: self.along(*q),
             overlap: -gap,
             slip,
             slid: before.slid + slip.norm(),
@@ -153,12 +202,14 @@ impl Sliding {
 /// Laws ask for slips over a step, s.
 const SECOND: f64 = 1.0;
 
-/// The indentation d = -u_z under waves of pressure and shear: f_z = -p and g = -i q times the spacing.
-fn kernel(moving: &Moving<'_>, spacing: f64) -> Kernel {
-    let compliances = moving.compliances();
-    let i = Complex::<f64>::i();
+/// The indentation d = -u_z under waves of pressure and of shear along the heading: f_z = -p and g = -i q times the area of a node.
+fn kernel<const D: usize>(moving: &Moving<'_, D>, heading: Vector2<f64>, area: f64) -> Kernel {
+    let (compliances, z) = (moving.compliances(), D - 1);
+    let dragged = |c: &SMatrix<Complex<f64>, D, D>| {
+        (0..z).map(|axis| c[(z, axis)] * heading[axis]).sum::<Complex<f64>>() * Complex::i() * area
+    };
     Kernel {
-        normal: compliances.iter().map(|c| c[(1, 1)] * spacing).collect(),
-        shear: compliances.iter().map(|c| i * c[(1, 0)] * spacing).collect(),
+        normal: compliances.iter().map(|c| c[(z, z)] * area).collect(),
+        shear: compliances.iter().map(dragged).collect(),
     }
 }

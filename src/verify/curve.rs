@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use mpi::topology::SimpleCommunicator;
+use nalgebra::Vector2;
 
 use super::setting::{Phase, Setting, one_arm};
 use super::{Case, Row};
@@ -36,7 +37,7 @@ fn case(held: &str, rule: PoissonRule, phase: Phase, velocities: Vec<f64>) -> Ca
     };
     let compare = move |_: &[_]| {
         let alone = SimpleCommunicator::self_comm();
-        let mut sliding = composition::steady(&alone, &setting.scene()?, Path::new("verify"))?;
+        let mut sliding = composition::steady(&alone, &setting.scene()?, Path::new("verify"), Vector2::x())?;
         let mut rows = Vec::new();
         for state in sliding.states(&velocities)? {
             let wave = setting.wave();

@@ -1,17 +1,21 @@
 //! A periodic layer under tractions that travel along its face without changing.
 //!
-//! In a frame that moves with them at the velocity v, a wave e^{ik xi} of the tractions, xi = x - v t, makes the layer vibrate at
-//! w = -k v, and only there. So each wave meets elastic cells with complex moduli M*(w) = M [mu_0 + sum_i mu_i i w tau_i/(1 + i w tau_i)]:
+//! In a frame that moves with them at the velocity v, a wave e^{ik.xi} of the tractions, xi = x - v t, makes the layer vibrate at
+//! w = -k.v, and only there. So each wave meets elastic cells with complex moduli M*(w) = M [mu_0 + sum_i mu_i i w tau_i/(1 + i w tau_i)]:
 //!
 //! ```text
 //! one way of relaxing:   C(k)/g(w),  C the elastic compliance, g = M*/M
 //! several:               the elimination of sum_p g_p(w) K_p(k)                   (super::waves)
 //! ```
 //!
+//! On its nodes the shortest wave along an axis travels both ways at once: it has half of itself at either frequency.
+//!
 //! Its arms dissipate, per wave and summed over the nodes (N of them, w the column's displacements),
 //! mu_ip/tau_i x^2/(1 + x^2) w* K_p w/N with x = w tau_i.
 
-use nalgebra::{Complex, Matrix2, Vector2};
+use std::f64::consts::PI;
+
+use nalgebra::{Complex, SMatrix, SVector, Vector2};
 
 use super::super::body::Solid;
 use super::layered::{PeriodicColumn, Relaxations};
@@ -21,44 +25,46 @@ use crate::error::Result;
 use crate::rheology::{Arm, Prony};
 
 /// The layer.
-pub struct Travelling {
-    transform: Transform<2>,
-    /// Of the nodes, m.
-    spacing: f64,
+pub struct Travelling<const D: usize> {
+    transform: Transform<D>,
+    /// Of the nodes along each axis of the face, m.
+    spacing: [f64; 2],
     /// Of all arms, s.
     times: Vec<f64>,
     /// How each part relaxes; none of the arms if it is elastic.
     series: Vec<Prony>,
-    form: Form,
+    form: Form<D>,
 }
 
-enum Form {
+enum Form<const D: usize> {
     /// All of it relaxes in one way: the elastic compliance of each wave.
-    Alike(Vec<Matrix2<f64>>),
+    Alike(Vec<SMatrix<f64, D, D>>),
     /// The stiffness of each part.
-    Parts(Vec<Operator<2>>),
+    Parts(Vec<Operator<D>>),
 }
 
 /// The layer at a velocity.
-pub struct Moving<'a> {
-    layer: &'a Travelling,
-    velocity: f64,
-    waves: Waves<'a>,
+pub struct Moving<'a, const D: usize> {
+    layer: &'a Travelling<D>,
+    /// Of each wave, rad/s.
+    frequencies: Vec<Vec<f64>>,
+    waves: Waves<'a, D>,
 }
 
-enum Waves<'a> {
-    /// The elastic compliances, and g of each wave.
-    Alike(&'a [Matrix2<f64>], Vec<Complex<f64>>),
-    /// The parts, and their sum at each wave.
-    Parts(&'a [Operator<2>], Vec<Vibration<2>>),
+/// Of each wave, at each of its frequencies.
+enum Waves<'a, const D: usize> {
+    /// The elastic compliances, and g.
+    Alike(&'a [SMatrix<f64, D, D>], Vec<Vec<Complex<f64>>>),
+    /// The parts, and their sum.
+    Parts(&'a [Operator<D>], Vec<Vec<Vibration<D>>>),
 }
 
-impl Travelling {
-    /// A layer with nodes this far apart, m; none of a body that is no periodic layer.
+impl<const D: usize> Travelling<D> {
+    /// A layer with nodes this far apart along each axis of its face, m; none of a body that is no periodic layer.
     pub fn new(
-        solid: &Solid<2>,
+        solid: &Solid<D>,
         Relaxations { times, series, .. }: &Relaxations,
-        spacing: f64,
+        spacing: [f64; 2],
     ) -> Result<Option<Self>> {
         let Some(column) = PeriodicColumn::new(solid) else { return Ok(None) };
         let transform = column.transform();
@@ -74,7 +80,7 @@ impl Travelling {
         Ok(Some(Self { transform, spacing, times: times.clone(), series: series.collect(), form }))
     }
 
-    /// How many nodes there are along the face.
+    /// How many nodes there are on the face.
     pub fn nodes(&self) -> usize {
         self.transform.nodes()
     }
@@ -84,66 +90,92 @@ impl Travelling {
         &self.times
     }
 
-    /// At a velocity along +x, m/s.
-    pub fn at(&self, velocity: f64) -> Result<Moving<'_>> {
-        let frequencies = (0..self.transform.waves()).map(|wave| self.frequency(wave, velocity));
+    /// At a velocity along x and y, m/s; the plane is that of x.
+    pub fn at(&self, velocity: Vector2<f64>) -> Result<Moving<'_, D>> {
+        let frequencies: Vec<Vec<f64>> =
+            (0..self.transform.waves()).map(|wave| self.frequencies(wave, velocity)).collect();
         let waves = match &self.form {
             Form::Alike(elastic) => {
-                Waves::Alike(elastic, frequencies.map(|w| self.series[0].complex_modulus(w)).collect())
+                let factors = |list: &Vec<f64>| list.iter().map(|w| self.series[0].complex_modulus(*w)).collect();
+                Waves::Alike(elastic, frequencies.iter().map(factors).collect())
             }
             Form::Parts(parts) => {
                 let factors = |w: f64| self.series.iter().map(|series| series.complex_modulus(w)).collect::<Vec<_>>();
-                let of_wave = |(wave, w): (usize, f64)| Vibration::new(parts, wave, &factors(w));
-                Waves::Parts(parts, frequencies.enumerate().map(of_wave).collect::<Result<_>>()?)
+                let of_wave = |(wave, list): (usize, &Vec<f64>)| {
+                    list.iter().map(|&w| Vibration::new(parts, wave, &factors(w))).collect::<Result<Vec<_>>>()
+                };
+                Waves::Parts(parts, frequencies.iter().enumerate().map(of_wave).collect::<Result<_>>()?)
             }
         };
-        Ok(Moving { layer: self, velocity, waves })
+        Ok(Moving { layer: self, frequencies, waves })
     }
 
-    /// w = -k v of a wave, rad/s.
-    fn frequency(&self, wave: usize, velocity: f64) -> f64 {
-        -self.transform.angles(wave)[0] / self.spacing * velocity
+    /// w = -k.v of a wave, rad/s: one, or for those that are shortest along an axis one for either way.
+    fn frequencies(&self, wave: usize, velocity: Vector2<f64>) -> Vec<f64> {
+        /// Of an angle: round-off.
+        const NEAR: f64 = 1e-9;
+        let mut all = vec![0.0];
+        for (axis, angle) in self.transform.angles(wave).into_iter().enumerate() {
+            // What leads by more than half a turn lags.
+            let angle = if angle > PI + NEAR { angle - 2.0 * PI } else { angle };
+            let w = -angle / self.spacing[axis] * velocity[axis];
+            let both = w != 0.0 && (angle - PI).abs() < NEAR;
+            all =
+                all.iter().flat_map(|&other| if both { vec![other + w, other - w] } else { vec![other + w] }).collect();
+        }
+        all
     }
 }
 
-impl Moving<'_> {
-    /// The compliance of the face to each wave of forces on its nodes, m per N/m; along the face u = i v and f = i g, as in
-    /// `super::waves`.
-    pub fn compliances(&self) -> Vec<Matrix2<Complex<f64>>> {
+impl<const D: usize> Moving<'_, D> {
+    /// The compliance of the face to each wave of forces on its nodes, m per N/m (m/N in space); along the face u = i v and
+    /// f = i g, as in `super::waves`.
+    pub fn compliances(&self) -> Vec<SMatrix<Complex<f64>, D, D>> {
+        let mean = |list: &[SMatrix<Complex<f64>, D, D>]| {
+            let sum = list.iter().fold(SMatrix::zeros(), |sum, c| sum + c);
+            sum / Complex::from(list.len() as f64)
+        };
         match &self.waves {
             Waves::Alike(elastic, factors) => {
-                elastic.iter().zip(factors).map(|(c, g)| c.map(|entry| entry / g)).collect()
+                let at = |(c, list): (&SMatrix<f64, D, D>, &Vec<Complex<f64>>)| {
+                    mean(&list.iter().map(|g| c.map(|entry| entry / g)).collect::<Vec<_>>())
+                };
+                elastic.iter().zip(factors).map(at).collect()
             }
-            Waves::Parts(_, waves) => waves.iter().map(Vibration::face).collect(),
+            Waves::Parts(_, waves) => {
+                waves.iter().map(|list| mean(&list.iter().map(Vibration::face).collect::<Vec<_>>())).collect()
+            }
         }
     }
 
-    /// What each arm dissipates under waves of forces (g, f_z), W/m.
-    pub fn dissipation(&self, forces: &[Vector2<Complex<f64>>]) -> Vec<f64> {
+    /// What each arm dissipates under waves of forces (g, f_z), W/m (W in space).
+    pub fn dissipation(&self, forces: &[SVector<Complex<f64>, D>]) -> Vec<f64> {
         let Travelling { transform, times, series, .. } = self.layer;
         let mut power = vec![0.0; times.len()];
         for (wave, force) in forces.iter().enumerate() {
-            let w = self.layer.frequency(wave, self.velocity);
-            for (form, series) in self.forms(wave, force).iter().zip(series) {
-                let form = form * transform.stands_for(wave) / transform.nodes() as f64;
-                for ((power, arm), time) in power.iter_mut().zip(&series.arms).zip(times) {
-                    // x^2/(1 + x^2) without overflow.
-                    *power += form * arm.weight / time / (1.0 + (w * time).powi(-2));
+            let frequencies = &self.frequencies[wave];
+            let share = transform.stands_for(wave) / (transform.nodes() * frequencies.len()) as f64;
+            for (which, w) in frequencies.iter().enumerate() {
+                for (form, series) in self.forms((wave, which), force).iter().zip(series) {
+                    for ((power, arm), time) in power.iter_mut().zip(&series.arms).zip(times) {
+                        // x^2/(1 + x^2) without overflow.
+                        *power += form * share * arm.weight / time / (1.0 + (w * time).powi(-2));
+                    }
                 }
             }
         }
         power
     }
 
-    /// w* K_p w of each part under a wave of forces.
-    fn forms(&self, wave: usize, force: &Vector2<Complex<f64>>) -> Vec<f64> {
+    /// w* K_p w of each part under a wave of forces, at one of its frequencies.
+    fn forms(&self, (wave, which): (usize, usize), force: &SVector<Complex<f64>, D>) -> Vec<f64> {
         match &self.waves {
             Waves::Alike(elastic, factors) => {
-                let of = |part: Vector2<f64>| part.dot(&(elastic[wave] * part));
-                vec![(of(force.map(|f| f.re)) + of(force.map(|f| f.im))) / factors[wave].norm_sqr()]
+                let of = |part: SVector<f64, D>| part.dot(&(elastic[wave] * part));
+                vec![(of(force.map(|f| f.re)) + of(force.map(|f| f.im))) / factors[wave][which].norm_sqr()]
             }
             Waves::Parts(parts, waves) => {
-                let w = waves[wave].column(*force);
+                let w = waves[wave][which].column(*force);
                 parts.iter().map(|part| part.form(wave, &w)).collect()
             }
         }
