@@ -377,3 +377,56 @@ fn materials_are_drawn_beside_each_other_and_beside_the_power_law() {
     let (text, code) = fail(at, &["plot", &one, "history"]);
     assert!(text.contains("no figure history; a material has: material") && code == 2, "{text}");
 }
+
+/// A run in space is drawn from above and along both directions, with forces in N; in the plane that is refused.
+#[test]
+fn a_run_in_space_has_eleven_figures() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = directory.path();
+    succeed(at, &["new", "ball.toml", "--like", "space"]);
+    let bulk = "output.bulk_at=[\"press\", \"drag\"]";
+    succeed(
+        at,
+        &["run", "ball.toml", "-q", "--set", "layer.cells=[12,10,4]", "--set", "phase.drag.steps=5", "--set", bulk],
+    );
+    let printed = succeed(at, &["plot", "ball.h5"]);
+    let names = [
+        "history",
+        "reactions",
+        "energy",
+        "tractions",
+        "stress",
+        "stick-slip",
+        "profile",
+        "pressure",
+        "shear",
+        "gap",
+        "material",
+    ]
+    .map(|name| format!("ball-{name}"));
+    let svgs = check(at, &printed, &names.each_ref().map(String::as_str));
+    for (svg, wanted) in svgs.iter().zip([
+        &["N, N", "along x", "along y"][..],
+        &["N, N"],
+        &["energy, J"],
+        &["(a) Along x at y = ", "(b) Along y at x = ", "y, m"],
+        &["zz", ", y = 0.0"],
+        &["no contact", "stick", "slip", "y, m"],
+        &["(d) Along y at x = ", "face of the body"],
+        &["p/E(0)", "y, m"],
+        &["|q|/E(0)", "arrows: "],
+        &["gap, 10", "white: contact"],
+        &["E(t), Pa"],
+    ]) {
+        let found = texts(svg).join("\n").replace('\u{a0}', " ");
+        assert!(wanted.iter().all(|text| found.contains(text)), "{wanted:?}: {found}");
+    }
+    // Both moments over the same part of the face, which is a square: its frames are as high as wide.
+    let pressure = frames(&svgs[7]);
+    assert!((pressure[0].1 - pressure[0].0 - (pressure[1].1 - pressure[1].0)).abs() < 1.0, "{pressure:?}");
+    run(at, "plane.h5", &[]);
+    for figure in ["pressure", "shear", "gap"] {
+        let (message, code) = fail(at, &["plot", "plane.h5", figure]);
+        assert!(code == 4 && message.contains("it is for runs in space"), "{message}");
+    }
+}

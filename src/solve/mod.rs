@@ -25,7 +25,7 @@ pub use driver::{Counts, Driver, MAX_NEWTON, Position};
 pub use monolithic::Monolithic;
 pub use response::{
     Compliance, Following, Inside, Interior, Layered, Moving, PeriodicColumn, Relaxation, Relaxations, Remembering,
-    Response, Sparse, Travelling,
+    Response, Sparse, Transform, Travelling,
 };
 
 /// What helps most steps that do not converge.

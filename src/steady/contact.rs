@@ -144,10 +144,10 @@ impl Contact<'_> {
         };
         let slope = slopes.iter().sum::<f64>() / slopes.len() as f64;
         let nearly = |v: &DVector<f64>| {
-            let mut waves = self.spectrum.waves(spread(v))?;
+            let mut waves = self.spectrum.waves(&spread(v))?;
             let kernel = self.kernel.normal.iter().zip(&self.kernel.shear);
             waves.iter_mut().zip(kernel).for_each(|(wave, (n, t))| *wave /= n + t * slope + self.softness);
-            Ok(gather(&self.spectrum.numbers(waves)?))
+            Ok(gather(&self.spectrum.numbers(&waves)?))
         };
         let solve = |b: &DVector<f64>| gmres::solve((&product, &nearly), b, SOLVE);
         let mut change = solve(&-gather(&self.closing(*approach, pressure)?))?;
@@ -164,15 +164,15 @@ impl Contact<'_> {
 
     /// d, m.
     fn indentation(&self, pressure: Vec<f64>, shear: Vec<f64>) -> Result<Vec<f64>> {
-        let mut waves = self.spectrum.waves(pressure)?;
+        let mut waves = self.spectrum.waves(&pressure)?;
         let none = shear.iter().all(|&q| q == 0.0);
         waves.iter_mut().zip(&self.kernel.normal).for_each(|(wave, c)| *wave *= c);
         if !none {
-            let dragged = self.spectrum.waves(shear)?;
+            let dragged = self.spectrum.waves(&shear)?;
             let more = dragged.iter().zip(&self.kernel.shear).map(|(wave, c)| wave * c);
             waves.iter_mut().zip(more).for_each(|(wave, more)| *wave += more);
         }
-        self.spectrum.numbers(waves)
+        self.spectrum.numbers(&waves)
     }
 
     /// h - D + d + p/alpha, m.

@@ -172,7 +172,7 @@ impl<const D: usize> On<D> {
 
     /// The waves of the forces on the nodes, (g, f_z), N/m, in space N.
     fn forces(&self, pressure: &[f64], shear: &[f64]) -> Result<Vec<SVector<Complex<f64>, D>>> {
-        let (p, q) = (self.spectrum.waves(pressure.to_vec())?, self.spectrum.waves(shear.to_vec())?);
+        let (p, q) = (self.spectrum.waves(pressure)?, self.spectrum.waves(shear)?);
         let force = |(p, q): (Complex<f64>, Complex<f64>)| {
             SVector::from_fn(|axis, _| {
                 let traction = if axis + 1 < D { q * -Complex::i() * self.heading[axis] } else { -p };
