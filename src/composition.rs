@@ -25,7 +25,7 @@ use crate::element::mpjr::Quadrature;
 use crate::error::{Error, Result};
 use crate::friction::{Coefficient, Coulomb, CoulombTanh, ElasticSlip, Law, Strength};
 use crate::interface::{Interface, Laws};
-use crate::loading::{self, Adaptive, DIRECTIONS, Motion, Mount, Phase, Placement};
+use crate::loading::{self, Adaptive, DIRECTIONS, Moment, Motion, Mount, Phase, Placement, Track};
 use crate::mesh::Source;
 use crate::parallel::{agree, share_numbers};
 use crate::petsc::{Integrator, Linear, Matrix, Search, Settings, Vector};
@@ -357,20 +357,27 @@ pub fn course(scene: &Scene) -> Vec<Phase> {
     let (mut start, mut approach, mut sliding, mut held) = (0.0, 0.0, Vector2::zeros(), None);
     let mut list = Vec::with_capacity(scene.phases.len());
     for phase in &scene.phases {
-        let force = match (phase.normal_force, phase.approach) {
-            (Some(force), _) => Some([held.unwrap_or(0.0), force]),
+        let pressed = phase.record().and_then(|record| track(record, &record.normal_force));
+        let lowered = phase.record().and_then(|record| track(record, &record.approach));
+        let end = |track: &Option<Track<f64>>, from: f64| track.as_ref().map(|track| track.at(from, phase.duration));
+        let from = held.unwrap_or(0.0);
+        let said = (phase.normal_force.or(end(&pressed, from)), phase.approach.or(end(&lowered, approach)));
+        let force = match said {
+            (Some(force), _) => Some([from, force]),
             (None, Some(_)) => None,
             (None, None) => held.map(|force| [force, force]),
         };
         // Nobody knows where a force leaves the indenter, nor with what force an approach does.
         let from_there = !list.is_empty() && (held.is_some() || force.is_some());
         held = force.map(|[_, force]| force);
-        let to = phase.approach.unwrap_or(approach);
-        let motion = match phase.motion {
-            scene::Motion::Velocity(velocity) => Motion::Velocity(velocity),
+        let to = said.1.unwrap_or(approach);
+        let motion = match &phase.motion {
+            scene::Motion::Velocity(velocity) => Motion::Velocity(*velocity),
             scene::Motion::Tangential { amplitude, cycles, phase } => {
-                Motion::Sinusoid { amplitude, cycles, phase: phase.map(f64::to_radians) }
+                Motion::Sinusoid { amplitude: *amplitude, cycles: *cycles, phase: phase.map(f64::to_radians) }
             }
+            scene::Motion::Measured(record) if record.slides() => Motion::Measured(Track::new(record.slid())),
+            scene::Motion::Measured(_) => Motion::Velocity(Vector2::zeros()),
         };
         let phase = Phase {
             name: phase.name.clone(),
@@ -378,6 +385,7 @@ pub fn course(scene: &Scene) -> Vec<Phase> {
             duration: phase.duration,
             approach: [approach, to],
             force,
+            measured: pressed.or(lowered),
             from_there,
             sliding,
             motion,
@@ -390,6 +398,28 @@ pub fn course(scene: &Scene) -> Vec<Phase> {
     list
 }
 
+/// The path of a measured column; none where there is none.
+fn track(record: &scene::Record, column: &[f64]) -> Option<Track<f64>> {
+    (!column.is_empty()).then(|| Track::new(record.rows(column)))
+}
+
+/// The moments at which steps of a phase end, besides those of equal steps: where bulk fields are asked for, `bulk`, s, and in adaptive steps
+/// the rows of what was measured.
+fn moments(phase: &Phase, bulk: &[f64], adaptive: bool) -> Vec<Moment> {
+    let rows = if adaptive { phase.rows() } else { Vec::new() };
+    let rows = rows.into_iter().map(|row| Moment { time: phase.start + row, bulk_output: false });
+    let mut all: Vec<Moment> = bulk.iter().map(|time| Moment { time: *time, bulk_output: true }).chain(rows).collect();
+    all.sort_by(|one, other| one.time.total_cmp(&other.time));
+    // Two moments this close are one.
+    let near = 1e-9 * phase.duration;
+    all.dedup_by(|next, kept| {
+        let same = next.time - kept.time <= near;
+        kept.bulk_output |= same && next.bulk_output;
+        same
+    });
+    all
+}
+
 /// The phases with their steps; a step ends at every moment that bulk output asks for. The indenter touches after an
 /// approach by `clearance`, m.
 pub fn phases(scene: &Scene, clearance: f64) -> Vec<Phase> {
@@ -399,15 +429,16 @@ pub fn phases(scene: &Scene, clearance: f64) -> Vec<Phase> {
     let mut rates = (0.0, Vector2::zeros());
     let at = &scene.output.bulk_at;
     let moment = |when: &When| if let When::Time(t) = when { Some(*t) } else { None };
-    let mut moments: Vec<f64> = at.iter().filter_map(moment).collect();
+    let mut bulk: Vec<f64> = at.iter().filter_map(moment).collect();
     let ends: HashSet<&str> = at.iter().filter_map(When::phase_end).collect();
-    moments.sort_by(f64::total_cmp);
+    bulk.sort_by(f64::total_cmp);
     let mut list = course(scene);
     for (phase, said) in list.iter_mut().zip(&scene.phases) {
         let (count, tolerance) = match said.stepping {
             Stepping::Steps(steps) => (steps, None),
             Stepping::Tolerance(tolerance) => (1, Some(tolerance)),
         };
+        let moments = moments(phase, &bulk, tolerance.is_some());
         phase.steps = loading::targets(phase.start, phase.duration, count, &moments);
         if let Some(last) = phase.steps.last_mut() {
             last.bulk_output |= ends.contains(phase.name.as_str());

@@ -1,12 +1,14 @@
 //! The loading history: where the indenter is at a given time of a given phase.
 
 mod mount;
+mod track;
 
 use std::f64::consts::PI;
 
 use nalgebra::{SVector, Vector2};
 
 pub use mount::{Mount, Support, Way};
+pub use track::Track;
 
 /// How many directions the indenter has: the approach, and the sliding along x and y.
 pub const DIRECTIONS: usize = 3;
@@ -53,7 +55,7 @@ impl Placement {
 }
 
 /// Tangential motion of one phase, relative to where the phase found the indenter.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Motion {
     /// m/s
     Velocity(Vector2<f64>),
@@ -66,6 +68,8 @@ pub enum Motion {
         /// rad
         phase: Vector2<f64>,
     },
+    /// As it was measured, m; at 0 where the phase begins.
+    Measured(Track<Vector2<f64>>),
 }
 
 impl Placement {
@@ -78,19 +82,24 @@ impl Placement {
 impl Motion {
     /// The velocity, m/s, at `local` of a phase of `duration`, s.
     fn velocity(&self, local: f64, duration: f64) -> Vector2<f64> {
-        match *self {
-            Self::Velocity(velocity) => velocity,
+        match self {
+            Self::Velocity(velocity) => *velocity,
+            Self::Measured(track) => {
+                let (end, dt) = after(local, duration);
+                track.rate(Vector2::zeros(), end, dt)
+            }
             Self::Sinusoid { amplitude, cycles, phase } => {
                 let angular = 2.0 * PI * cycles / duration;
-                amplitude.zip_map(&phase, |amplitude, phase| amplitude * angular * (angular * local + phase).cos())
+                amplitude.zip_map(phase, |amplitude, phase| amplitude * angular * (angular * local + phase).cos())
             }
         }
     }
 
     /// How far it has gone at `local` of a phase of `duration`, and on average in the `dt` before, m and m/s.
     fn way(&self, local: f64, dt: f64, duration: f64) -> [Vector2<f64>; 2] {
-        match *self {
-            Self::Velocity(velocity) => [velocity * local, velocity],
+        match self {
+            Self::Velocity(velocity) => [velocity * local, *velocity],
+            Self::Measured(track) => [track.at(Vector2::zeros(), local), track.rate(Vector2::zeros(), local, dt)],
             Self::Sinusoid { amplitude, cycles, phase } => {
                 let angular = 2.0 * PI * cycles / duration;
                 // sin a - sin b = 2 cos((a + b)/2) sin((a - b)/2) keeps the digits of short steps.
@@ -102,7 +111,7 @@ impl Motion {
                 let rate = |amplitude: f64, phase: f64| {
                     amplitude * 2.0 * (angular * (local - dt / 2.0) + phase).cos() * half.sin() / dt
                 };
-                [amplitude.zip_map(&phase, gone), amplitude.zip_map(&phase, rate)]
+                [amplitude.zip_map(phase, gone), amplitude.zip_map(phase, rate)]
             }
         }
     }
@@ -121,6 +130,8 @@ pub struct Phase {
     pub approach: [f64; 2],
     /// The normal force at its beginning and end, N/m, where that is held instead of the approach.
     pub force: Option<[f64; 2]>,
+    /// How that of both which is given goes from its beginning to its end, as it was measured; none = linearly.
+    pub measured: Option<Track<f64>>,
     /// Whether it begins with the approach and the force that there are: after a phase that held a force, or before one.
     pub from_there: bool,
     /// Sliding at its beginning, m.
@@ -167,7 +178,7 @@ impl Adaptive {
     /// as many.
     pub fn new(phase: &Phase, allowed: f64, jump: f64) -> Self {
         let halves = match phase.motion {
-            Motion::Velocity(_) => 1.0,
+            Motion::Velocity(_) | Motion::Measured(_) => 1.0,
             Motion::Sinusoid { cycles, .. } => (2.0 * cycles).max(1.0),
         };
         let longest = phase.duration / (FEWEST * halves);
@@ -196,12 +207,9 @@ impl Phase {
 
     /// Where the indenter is at the end of a step of length `dt` that ends at `t`, s.
     pub fn placement(&self, t: f64, dt: f64) -> Placement {
-        let [from, to] = self.approach;
         let local = t - self.start;
-        let fraction = (local / self.duration).min(1.0);
-        let approach = from + (to - from) * fraction;
-        let approach_rate = (to - from) / self.duration;
-        let force = self.force.map(|[from, to]| Support::force(from + (to - from) * fraction));
+        let [approach, approach_rate] = self.given(self.approach, self.force.is_none(), (local, dt));
+        let force = self.force.map(|force| Support::force(self.given(force, true, (local, dt))[0]));
         let [gone, sliding_rate] = self.motion.way(local, dt, self.duration);
         let sliding = self.sliding + gone;
         Placement {
@@ -216,16 +224,56 @@ impl Phase {
         }
     }
 
+    /// What goes from one value to another over the phase, at `local` and its mean rate over the `dt` before, s; as it was measured if
+    /// that is `given`.
+    fn given(&self, [from, to]: [f64; 2], given: bool, (local, dt): (f64, f64)) -> [f64; 2] {
+        match self.measured.as_ref().filter(|_| given) {
+            Some(track) => [track.at(from, local), track.rate(from, local, dt)],
+            None => [from + (to - from) * (local / self.duration).min(1.0), (to - from) / self.duration],
+        }
+    }
+
     /// The velocities of approach and of sliding at the time `t`, m/s.
     pub fn rates(&self, t: f64) -> (f64, Vector2<f64>) {
-        let [from, to] = self.approach;
-        ((to - from) / self.duration, self.motion.velocity(t - self.start, self.duration))
+        let local = t - self.start;
+        let [_, approaching] = self.given(self.approach, self.force.is_none(), after(local, self.duration));
+        (approaching, self.motion.velocity(local, self.duration))
+    }
+
+    /// The moments, s, at which its path turns, with the approach and the sliding there, m: its ends, the crests of a sinusoid with the
+    /// deeper approach of its ends, the rows of what was measured.
+    pub fn turns(&self) -> Vec<(f64, Vector2<f64>)> {
+        let [before, after] = self.approach;
+        let mut turns = vec![(before, self.sliding)];
+        if let Motion::Sinusoid { .. } = self.motion {
+            let [x, y] = [0, 1].map(|axis| self.sliding_range(axis));
+            turns.extend([0, 1].map(|end| (before.max(after), Vector2::new(x[end], y[end]))));
+        }
+        for local in self.rows() {
+            let Placement { approach, sliding, .. } = self.placement(self.start + local, 0.0);
+            turns.push((approach, sliding));
+        }
+        turns.push((after, self.final_sliding()));
+        turns
+    }
+
+    /// The times of the rows of what was measured inside it, s after its beginning.
+    pub fn rows(&self) -> Vec<f64> {
+        let times: Vec<f64> = match (&self.measured, &self.motion) {
+            (Some(track), _) => track.before(self.duration).iter().map(|row| row.0).collect(),
+            (None, Motion::Measured(track)) => track.before(self.duration).iter().map(|row| row.0).collect(),
+            (None, _) => Vec::new(),
+        };
+        times.into_iter().filter(|time| *time > 0.0).collect()
     }
 
     /// The least and the greatest sliding of the phase along an axis, m.
     pub fn sliding_range(&self, axis: usize) -> [f64; 2] {
         let (start, end) = (self.sliding[axis], self.final_sliding()[axis]);
         let mut places = vec![start, end];
+        if let Motion::Measured(track) = &self.motion {
+            places.extend(track.before(self.duration).iter().map(|(_, gone)| self.sliding[axis] + gone[axis]));
+        }
         if let Motion::Sinusoid { amplitude, cycles, phase } = self.motion {
             // The crests of the sine: a quarter and three quarters through a cycle.
             let (amplitude, first) = (amplitude[axis], phase[axis] / (2.0 * PI));
@@ -243,24 +291,39 @@ impl Phase {
     }
 }
 
-/// The ends of `steps` equal steps over a phase. A step also ends, and is marked for bulk output, at each of the
-/// `moments` (s, absolute, ascending) inside the phase.
-pub fn targets(start: f64, duration: f64, steps: usize, moments: &[f64]) -> Vec<Target> {
+/// A short while, and its end, s, right after `local` in a phase of `duration`, or right before its end.
+fn after(local: f64, duration: f64) -> (f64, f64) {
+    const SHORT: f64 = 1e-6;
+    let short = SHORT * duration;
+    ((local + short).min(duration), short)
+}
+
+/// A moment at which a step ends whatever its length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moment {
+    /// s, absolute.
+    pub time: f64,
+    /// Whether bulk fields are asked for there.
+    pub bulk_output: bool,
+}
+
+/// The ends of `steps` equal steps over a phase. A step also ends at each of the `moments` (ascending) inside the phase.
+pub fn targets(start: f64, duration: f64, steps: usize, moments: &[Moment]) -> Vec<Target> {
     let nominal = duration / steps as f64;
     // Two moments this close are one.
     let near = 1e-9 * nominal;
-    let [first, end] = [start, start + duration].map(|t| moments.partition_point(|&moment| moment <= t + near));
+    let [first, end] = [start, start + duration].map(|t| moments.partition_point(|moment| moment.time <= t + near));
     let mut moments = moments[first..end].iter().copied().peekable();
     let mut list = Vec::with_capacity(steps);
     let mut last = start;
     for k in 1..=steps {
         let end = start + duration * (k as f64 / steps as f64);
         let mut dt = nominal;
-        while let Some(time) = moments.next_if(|&t| t < end - near) {
-            list.push(Target { time, dt: time - last, bulk_output: true });
+        while let Some(Moment { time, bulk_output }) = moments.next_if(|moment| moment.time < end - near) {
+            list.push(Target { time, dt: time - last, bulk_output });
             (last, dt) = (time, end - time);
         }
-        let bulk_output = moments.next_if(|&t| t <= end + near).is_some();
+        let bulk_output = moments.next_if(|moment| moment.time <= end + near).is_some_and(|moment| moment.bulk_output);
         list.push(Target { time: end, dt, bulk_output });
         last = end;
     }
@@ -274,7 +337,8 @@ mod tests {
     /// Equal steps have one length, bit for bit; an extra moment splits just its own step; the end is exact.
     #[test]
     fn targets_hit_every_moment() {
-        let list = targets(1.0, 0.7, 7, &[0.5, 1.25, 1.3, 9.0]);
+        let moments = [0.5, 1.25, 1.3, 9.0].map(|time| Moment { time, bulk_output: true });
+        let list = targets(1.0, 0.7, 7, &moments);
         assert_eq!(list.len(), 8);
         assert_eq!(list.iter().filter(|target| target.dt == 0.7 / 7.0).count(), 6);
         assert_eq!(list[2], Target { time: 1.25, dt: 1.25 - list[1].time, bulk_output: true });
@@ -293,6 +357,7 @@ mod tests {
             duration: 3.0,
             approach: [0.0, 1.0],
             force: None,
+            measured: None,
             from_there: false,
             sliding: Vector2::new(0.4, -0.1),
             motion,

@@ -36,9 +36,9 @@ fn what_may_be_absent_has_its_default() {
     assert_eq!(scene.output, Output { interface_every: 1, bulk_at: vec![], checkpoint_every: 0, energy: true });
     let [first, second] = scene.phases.as_slice() else { panic!("two phases") };
     assert_eq!((first.name.as_str(), second.name.as_str()), ("phase-1", "phase-2"));
-    assert_eq!((first.approach, first.motion), (None, Motion::Velocity(Vector2::zeros())));
+    assert_eq!((first.approach, &first.motion), (None, &Motion::Velocity(Vector2::zeros())));
     // The distance is the length of the way, whichever way.
-    assert_eq!((second.duration, second.motion), (2.0, Motion::Velocity([-0.5, 0.0].into())));
+    assert_eq!((second.duration, &second.motion), (2.0, &Motion::Velocity([-0.5, 0.0].into())));
 }
 
 #[test]
@@ -114,8 +114,8 @@ fn overrides_are_applied_in_order_by_name_and_by_index() {
     assert_eq!((layer(&scene).spans[0].sides, layer(&scene).grading), (Sides::Roller, 3.0));
     assert_eq!(scene.solver.tolerance, 1e-6);
     assert_eq!(
-        (scene.phases[1].name.as_str(), scene.phases[1].motion),
-        ("fast, 1.5 m/s", Motion::Velocity([1.5, 0.0].into()))
+        (scene.phases[1].name.as_str(), &scene.phases[1].motion),
+        ("fast, 1.5 m/s", &Motion::Velocity([1.5, 0.0].into()))
     );
     assert_eq!(scene.phases[0].stepping, Stepping::Steps(9));
     assert_eq!(scene.output.bulk_at[1], When::Time(1.0));

@@ -17,7 +17,7 @@ use crate::parallel::agree;
 use crate::petsc::Vector;
 use crate::rheology::Memory;
 use crate::rheology::prony::{Prony, common_times};
-use crate::scene::{self, MeshFile, Scene};
+use crate::scene::{self, MeshFile, Phase, Scene};
 use crate::solve::{Body, Moduli, Region};
 
 /// The mesh of the scene at `file`, on every rank. A .msh file is read by rank 0 only. Collective.
@@ -302,10 +302,11 @@ fn unknown(file: &str, role: Role, roles: &Roles, known: &[(i64, Option<String>)
 /// The indenter does not pass the lowest point of the body.
 fn depth_allows(mesh: &Mesh<2>, scene: &Scene, file: &Path) -> Result<()> {
     let height = mesh.height();
-    match scene.phases.iter().find(|phase| phase.approach.is_some_and(|approach| approach >= height)) {
+    let passes = |phase: &&Phase| phase.approaches().iter().any(|(_, approach)| *approach >= height);
+    match scene.phases.iter().find(passes) {
         Some(phase) => Err(Error::scene(
             file,
-            format!("phase.{}.approach", phase.name),
+            phase.approach_key(),
             format!("must be less than the height of the body below its contact face ({height:.6e} m)"),
         )),
         None => Ok(()),

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::scene::{Body, Indenter, Scene};
 
 /// What tells whether the files that the scene in `file` names have changed: a line `KEY CHECKSUM` for each, the checksum
-/// that of its bytes. Materials from files are in the resolved scene, and not here.
+/// that of its bytes. Materials, tables of friction and motions from files are in the resolved scene, and not here.
 ///
 /// # Errors
 /// [`crate::error::Error::File`] for a file that cannot be read.

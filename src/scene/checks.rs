@@ -91,9 +91,10 @@ fn in_space(scene: &Scene) -> Check {
         return fail("indenter.profile", SPACE);
     }
     for phase in &scene.phases {
-        let (key, across) = match phase.motion {
+        let (key, across) = match &phase.motion {
             Motion::Velocity(velocity) => ("velocity", velocity.y),
             Motion::Tangential { amplitude, .. } => ("tangential.amplitude", amplitude.y),
+            Motion::Measured(record) => ("motion", record.sliding_y.iter().fold(0.0, |most: f64, y| most.max(y.abs()))),
         };
         if across != 0.0 && !space {
             return fail(&format!("phase.{}.{key}", phase.name), format!("a direction along y {SPACE}"));
@@ -219,9 +220,9 @@ fn adaptive(scene: &Scene) -> Check {
 
 /// A force or a mount holds the indenter by the condensed strategy, in planned steps; not both of them along the approach.
 fn load(scene: &Scene) -> Check {
-    let forced = scene.phases.iter().find(|phase| phase.normal_force.is_some());
+    let forced = scene.phases.iter().find(|phase| phase.says_force());
     let key = match (forced, &scene.mount) {
-        (Some(phase), _) => format!("phase.{}.normal_force", phase.name),
+        (Some(phase), _) => force_key(phase),
         (None, Some(_)) => "mount".to_owned(),
         (None, None) => return Ok(()),
     };
@@ -235,6 +236,11 @@ fn load(scene: &Scene) -> Check {
         return fail(&key, "is not held in adaptive steps yet; give steps in all phases");
     }
     Ok(())
+}
+
+/// The key by which a phase says its force.
+fn force_key(phase: &Phase) -> String {
+    format!("phase.{}.{}", phase.name, if phase.record().is_some() { "motion" } else { "normal_force" })
 }
 
 /// Contact without penetration and Coulomb's law itself are met by tractions at nodes; where displacements decide them, or
@@ -265,8 +271,9 @@ fn exact_laws(scene: &Scene) -> Check {
 
 /// The indenter neither passes the clamped face nor, as a circle, sinks in to its centre.
 fn approach(phase: &Phase, scene: &Scene) -> Check {
-    let Some(approach) = phase.approach else { return Ok(()) };
-    let key = format!("phase.{}.approach", phase.name);
+    let deepest = phase.approaches().into_iter().max_by(|(_, one), (_, other)| one.total_cmp(other));
+    let Some((_, approach)) = deepest else { return Ok(()) };
+    let key = phase.approach_key();
     if let Some(Layer { depth, .. }) = scene.layer()
         && approach >= *depth
     {

@@ -1,5 +1,5 @@
-//! What a scene takes from other files, so that its table holds it in full: materials, `material = { file = "material.toml" }`, and
-//! the tables that the coefficient of friction names.
+//! What a scene takes from other files, so that its table holds it in full: materials, `material = { file = "material.toml" }`,
+//! the tables that the coefficient of friction names, and the motions of phases, `motion = "history.csv"`.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use super::document::parse;
 use super::friction::tables_in;
 use super::keys::tables::MATERIAL_FILE;
 use super::keys::{self, Section};
-use super::read::material;
+use super::read::{material, phase, record};
 use crate::error::{Error, Result};
 use crate::input;
 use crate::table::{self as numbers, Fault};
@@ -20,6 +20,7 @@ pub type Load<'a> = &'a dyn Fn(&Path) -> Result<String>;
 /// Puts into the table of a scene what it takes from other files. Paths are relative to the scene `file`.
 pub fn include(table: &mut Table, file: &Path, load: Load) -> Result<()> {
     materials(table, file, load)?;
+    motions(table, file, load)?;
     match table.get_mut("friction") {
         Some(Value::Table(friction)) => tables(friction, file, load),
         _ => Ok(()),
@@ -43,6 +44,22 @@ fn tables(friction: &mut Table, scene: &Path, load: Load) -> Result<()> {
         let columns = numbers::Table::read(text.as_bytes()).and_then(|table| table.columns(&[0, 1])).map_err(wrong)?;
         let points = columns.rows.into_iter().map(|row| row.values.into()).collect();
         tables.insert(name, Value::Array(points));
+    }
+    Ok(())
+}
+
+/// Replaces the file of each measured motion by what it says.
+fn motions(table: &mut Table, scene: &Path, load: Load) -> Result<()> {
+    let Some(Value::Array(phases)) = table.get_mut("phase") else { return Ok(()) };
+    for (index, phase) in phases.iter_mut().enumerate() {
+        let Some(phase) = phase.as_table_mut() else { continue };
+        let Some(file) = phase.get("motion").and_then(Value::as_str).map(str::to_owned) else { continue };
+        let name = phase.get("name").and_then(Value::as_str).map_or_else(|| phase::default_name(index), str::to_owned);
+        let key = format!("phase.{name}.motion");
+        let text = load_beside(&file, (scene, &key), load)?;
+        let record =
+            record::table(&file, &text).map_err(|reason| Error::scene(scene, &key, format!("{file:?}: {reason}")))?;
+        phase.insert("motion".into(), Value::Table(record));
     }
     Ok(())
 }

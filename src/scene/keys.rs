@@ -272,6 +272,15 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// An array of finite numbers; empty when absent.
+    pub fn numbers(&self, key: &str) -> Result<Vec<f64>> {
+        let finite = |(index, value): (usize, &Value)| {
+            let found = number(value).filter(|number| number.is_finite());
+            found.ok_or_else(|| self.must_be(&format!("{key}.{index}"), "a finite number", value))
+        };
+        self.values(key)?.iter().enumerate().map(finite).collect()
+    }
+
     /// The error for an absent key.
     pub fn missing(&self, key: &str, what: &str) -> Error {
         self.error(key, format!("missing; give {what}"))

@@ -1,5 +1,7 @@
 //! What a scene's material and loading history are to the laws of viscoelasticity.
 
+use nalgebra::Vector2;
+
 use super::{Arm, Material, Motion, Phase, PoissonRule, Scene};
 use crate::rheology::{self, Band, Loading, Poisson, Prony, Ramp};
 
@@ -49,9 +51,13 @@ pub(super) fn loading(phases: &[Phase]) -> Option<Loading> {
     let (mut start, mut reached) = (0.0, 0.0);
     for phase in phases {
         let end = start + phase.duration;
-        if let Some(next) = phase.approach.filter(|next| *next != reached) {
-            approach.push(Ramp { from: start, to: end, rate: (next - reached) / phase.duration });
-            reached = next;
+        let mut from = start;
+        for (local, next) in some(&phase.approaches()) {
+            let to = start + local;
+            if next != reached && to > from {
+                approach.push(Ramp { from, to, rate: (next - reached) / (to - from) });
+            }
+            (from, reached) = (to, next);
         }
         sliding.extend(ramps_of(phase, start));
         moments.extend(some_steps(phase).map(|t| start + t));
@@ -60,10 +66,13 @@ pub(super) fn loading(phases: &[Phase]) -> Option<Loading> {
     Some(Loading { band, directions: vec![approach, sliding], moments })
 }
 
+/// The most ramps that stand for a phase.
+const MOST_RAMPS: usize = 64;
+
 /// How a phase slides; a sinusoid by the chords of its first quarter cycles.
 fn ramps_of(phase: &Phase, start: f64) -> Vec<Ramp> {
-    const MOST: usize = 64;
-    match phase.motion {
+    match &phase.motion {
+        Motion::Measured(record) => chords(&record.slid(), start),
         Motion::Velocity(velocity) if velocity.amax() == 0.0 => Vec::new(),
         Motion::Velocity(velocity) => vec![Ramp { from: start, to: start + phase.duration, rate: velocity.norm() }],
         Motion::Tangential { amplitude, cycles, .. } => {
@@ -74,9 +83,25 @@ fn ramps_of(phase: &Phase, start: f64) -> Vec<Ramp> {
                 to: start + (phase.duration).min((k + 1) as f64 * quarter),
                 rate: if matches!(k % 4, 0 | 3) { amplitude } else { -amplitude } / quarter,
             };
-            (0..((4.0 * cycles).ceil() as usize).min(MOST)).map(chord).collect()
+            (0..((4.0 * cycles).ceil() as usize).min(MOST_RAMPS)).map(chord).collect()
         }
     }
+}
+
+/// The ramps of a measured path without where it turns back, from row to row.
+fn chords(rows: &[(f64, Vector2<f64>)], start: f64) -> Vec<Ramp> {
+    let chord = |pair: &[(f64, Vector2<f64>)]| {
+        let [from, to] = [pair[0].0, pair[1].0];
+        Ramp { from: start + from, to: start + to, rate: (pair[1].1 - pair[0].1).norm() / (to - from) }
+    };
+    some(rows).windows(2).map(chord).collect()
+}
+
+/// Some rows of many, evenly, and the last one.
+fn some<T: Copy>(rows: &[T]) -> Vec<T> {
+    let every = rows.len().div_ceil(MOST_RAMPS).max(1);
+    let last = rows.len().saturating_sub(1);
+    rows.iter().enumerate().filter(|(row, _)| row % every == 0 || *row == last).map(|(_, row)| *row).collect()
 }
 
 /// The ends of the first steps of a phase, and then of ever fewer, s after its beginning.

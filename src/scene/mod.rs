@@ -16,6 +16,7 @@ mod mount;
 mod overrides;
 mod penalty;
 mod read;
+mod record;
 mod resolved;
 pub mod schema;
 pub mod sweep;
@@ -36,6 +37,7 @@ pub use load::{from_table, read, read_with};
 pub use mount::{Mount, MountEnd};
 pub use overrides::{get, set};
 pub use penalty::{added_compliance, penalty_for, penalty_on_mesh, shortest_step};
+pub use record::Record;
 
 /// One scene: the layer, its material, the indenter, the contact, the loading history, and what to keep of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -283,7 +285,7 @@ pub enum Stepping {
 }
 
 /// Tangential motion of the indenter over one phase, relative to where the phase found it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Motion {
     /// Constant velocity along x and, in space, y, m/s; may be 0 or negative.
@@ -299,6 +301,9 @@ pub enum Motion {
         #[serde(serialize_with = "resolved::number_or_pair", skip_serializing_if = "is_zero")]
         phase: Vector2<f64>,
     },
+    /// As it was measured, and with it perhaps the approach or the normal force, which the phase then does not say.
+    #[serde(rename = "motion")]
+    Measured(Record),
 }
 
 fn is_zero(vector: &Vector2<f64>) -> bool {

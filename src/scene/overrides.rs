@@ -22,15 +22,18 @@ pub(super) fn apply(table: &mut Table, overrides: &[String], file: &Path) -> Res
 
 /// Whether an override may name a file, and so decides what other keys there are.
 pub(super) fn names_file(typed: &str) -> bool {
-    split(typed).is_ok_and(|(path, _)| is_of_material(path) || matches!(path, "friction" | "friction.coefficient"))
+    let names = |path: &str| names_whole_file(path) || matches!(path, "friction" | "friction.coefficient");
+    split(typed).is_ok_and(|(path, _)| names(path))
 }
 
-/// Whether the path is that of a material as a whole or of its file.
-pub(super) fn is_of_material(path: &str) -> bool {
+/// Whether the path is that of a material as a whole or of its file, or of a measured motion or what it may be in.
+pub(super) fn names_whole_file(path: &str) -> bool {
     let keys = split_path(path);
     match keys.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
         ["material"] | ["material", "file"] | ["material", _, "file"] => true,
         ["material", index] => index.parse::<usize>().is_ok(),
+        // A whole phase may have one.
+        ["phase"] | ["phase", _] | ["phase", _, "motion"] => true,
         _ => false,
     }
 }

@@ -7,6 +7,7 @@ mod indenter;
 pub(super) mod material;
 mod mount;
 pub(super) mod phase;
+pub(super) mod record;
 
 use std::path::Path;
 

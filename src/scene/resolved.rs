@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
-use super::{Body, Layer, Material, Phase, Scene, Sides, Span, Stepping, When};
+use super::{Body, Layer, Material, Phase, Record, Scene, Sides, Span, Stepping, When};
 
 impl Scene {
     /// The resolved scene as TOML: every default written out, every duration and modulus in its own key. Reading it
@@ -60,13 +60,12 @@ impl Scene {
 
     /// The deepest approach of all phases, m; the tolerances of adaptive steps are relative to it.
     pub fn deepest(&self) -> f64 {
-        self.phases.iter().filter_map(|phase| phase.approach).fold(0.0, f64::max)
+        self.phases.iter().flat_map(Phase::approaches).map(|(_, approach)| approach).fold(0.0, f64::max)
     }
 
     /// Whether a force, or a mount, holds the indenter along the approach at any time.
     pub fn is_loaded(&self) -> bool {
-        self.phases.iter().any(|phase| phase.normal_force.is_some())
-            || self.mount.is_some_and(|mount| mount.normal.is_some())
+        self.phases.iter().any(Phase::says_force) || self.mount.is_some_and(|mount| mount.normal.is_some())
     }
 
     /// The same scene up to the end of its first `count` phases, without a title: what the state there depends on; none
@@ -101,7 +100,9 @@ impl Phase {
         match self.stepping {
             Stepping::Steps(steps) => steps,
             // The steps of a method whose local error goes with their square.
-            Stepping::Tolerance(tolerance) => (3.0 / tolerance.sqrt()) as usize + 10,
+            Stepping::Tolerance(tolerance) => {
+                (3.0 / tolerance.sqrt()) as usize + 10 + self.record().map_or(0, Record::len)
+            }
         }
     }
 }

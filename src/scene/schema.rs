@@ -135,6 +135,10 @@ fn kind(kind: &Kind) -> Value {
         Kind::Texts(_) => texts(),
         Kind::Choice(_) | Kind::LengthUnit => json!({ "enum": kind.words() }),
         Kind::Table(keys) => table(keys),
+        Kind::FileOrTable(_, keys) => {
+            json!({ "if": { "type": "string" }, "then": {}, "else": table(keys) })
+        }
+        Kind::Numbers(_) => json!({ "type": "array", "items": { "type": "number" } }),
         Kind::Tables(_, keys) => json!({ "type": "array", "items": table(keys) }),
         Kind::OneOrTables(keys) => {
             json!({ "if": { "type": "array" }, "then": { "items": table(keys), "minItems": 1 }, "else": table(keys) })

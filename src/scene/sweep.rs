@@ -74,16 +74,16 @@ pub fn read(text: &str, file: &Path) -> Result<String> {
         let mut table = base.clone();
         let values: Vec<String> = chosen.iter().map(|(_, value)| shown(value)).collect();
         let label = label(&keys, &values);
-        // What names the file of a material acts before it is read, all else after, on what it says.
-        let (materials, others): (Vec<_>, Vec<_>) =
-            chosen.into_iter().partition(|(key, _)| overrides::is_of_material(key));
+        // What names the file of a material or of a motion acts before it is read, all else after, on what it says.
+        let (files, others): (Vec<_>, Vec<_>) =
+            chosen.into_iter().partition(|(key, _)| overrides::names_whole_file(key));
         let put = |table: &mut Table, chosen: &[(&str, &Value)]| {
             chosen.iter().try_for_each(|(key, value)| {
                 let value = whole_table(table, key, value, file)?;
                 set(table, key, value, file)
             })
         };
-        put(&mut table, &materials)?;
+        put(&mut table, &files)?;
         include(&mut table, &scene_file, &open).map_err(|error| blame(error, file, &label))?;
         put(&mut table, &others)?;
         follow.iter().try_for_each(|follow| follow.apply(&mut table, file))?;

@@ -2,6 +2,8 @@
 
 use std::f64::consts::SQRT_2;
 
+use nalgebra::Vector2;
+
 use crate::composition::{Outline, Shape, course, reach};
 use crate::loading::{Motion, Phase};
 use crate::profile::Profile;
@@ -87,7 +89,7 @@ impl Encounters {
             let upto = self.list.partition_point(|met| met.phase <= index);
             let from = self.list.partition_point(|met| met.phase < index).min(upto - 1);
             let met = self.list[from..upto].iter().max_by(|a, b| a.overlap.total_cmp(&b.overlap))?;
-            let moves = phase.approach[0] != phase.approach[1] || slides(phase);
+            let moves = phase.turns().iter().any(|turn| turn.0 != phase.approach[0]) || slides(phase);
             (moves && met.overlap > 0.0).then_some((index, phase, met))
         })
     }
@@ -98,6 +100,10 @@ pub fn slides(phase: &Phase) -> bool {
     match phase.motion {
         Motion::Velocity(velocity) => velocity.x != 0.0,
         Motion::Sinusoid { amplitude, .. } => amplitude.x != 0.0,
+        Motion::Measured(_) => {
+            let [least, most] = phase.sliding_range(0);
+            most > least
+        }
     }
 }
 
@@ -113,17 +119,8 @@ struct Moment {
 fn moments(course: &[Phase]) -> Vec<Moment> {
     let mut all: Vec<Moment> = Vec::new();
     for (index, phase) in course.iter().enumerate() {
-        let [before, after] = phase.approach;
-        let [least, most] = phase.sliding_range(0);
-        let mut add = |approach, sliding| {
-            all.push(Moment { phase: index, approach, sliding });
-        };
-        add(before, phase.sliding.x);
-        if matches!(phase.motion, Motion::Sinusoid { .. }) {
-            add(before.max(after), least);
-            add(before.max(after), most);
-        }
-        add(after, phase.final_sliding().x);
+        let moment = |(approach, sliding): (f64, Vector2<f64>)| Moment { phase: index, approach, sliding: sliding.x };
+        all.extend(phase.turns().into_iter().map(moment));
     }
     let every = all.len().div_ceil(MOST_MOMENTS);
     let deepest = all.iter().map(|moment| moment.approach).fold(f64::NEG_INFINITY, f64::max);

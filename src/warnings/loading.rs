@@ -1,5 +1,7 @@
 //! Whether friction and the steps are fine enough for the motions that they are to follow.
 
+use nalgebra::Vector2;
+
 use super::encounter::Encounter;
 use super::{Before, Warning, above, phase};
 use crate::loading::{Motion, Phase};
@@ -25,14 +27,24 @@ fn step(scene: &Scene, index: usize) -> Option<f64> {
     }
 }
 
+/// As [`Phase::turns`] has it.
+type Turn = (f64, Vector2<f64>);
+
 /// The speeds at which the indenter moves, m/s: towards the face, and along it, on average over a cycle.
 fn speeds(phase: &Phase) -> [f64; 2] {
-    let [from, to] = phase.approach;
+    let turns = phase.turns();
+    let way = |part: fn(&Turn, &Turn) -> f64| turns.windows(2).map(|pair| part(&pair[0], &pair[1])).sum::<f64>();
     let along = match phase.motion {
         Motion::Velocity(velocity) => velocity.norm(),
         Motion::Sinusoid { amplitude, cycles, .. } => 4.0 * amplitude.norm() * cycles / phase.duration,
+        Motion::Measured(_) => way(|one, other| (other.1 - one.1).norm()) / phase.duration,
     };
-    [(to - from) / phase.duration, along].map(f64::abs)
+    let [from, to] = phase.approach;
+    let towards = match phase.measured {
+        Some(_) => way(|one, other| (other.0 - one.0).abs()),
+        None => (to - from).abs(),
+    };
+    [towards / phase.duration, along]
 }
 
 /// Above [`MOST_REGULARISED`] of the slowest motion in contact.
@@ -132,7 +144,7 @@ fn motions(phase: &Phase, met: &Encounter) -> Vec<(f64, f64)> {
     }
     if along > 0.0 {
         let passage = match phase.motion {
-            Motion::Velocity(_) => (met.contact()[0] / along).min(phase.duration),
+            Motion::Velocity(_) | Motion::Measured(_) => (met.contact()[0] / along).min(phase.duration),
             Motion::Sinusoid { cycles, .. } => phase.duration / (4.0 * cycles).max(1.0),
         };
         list.push((passage, passage / FEWEST_STEPS_TO_A_MOTION));

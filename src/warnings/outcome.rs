@@ -2,7 +2,7 @@
 
 use super::{After, Warning, above, cells, phase};
 use crate::output::HistoryRow;
-use crate::scene::{Law, Motion, Strategy};
+use crate::scene::{Law, Motion, Phase, Strategy};
 
 /// The imbalance of energies over the largest work.
 pub const MOST_IMBALANCE: f64 = 0.05;
@@ -40,12 +40,17 @@ impl After<'_> {
         let rows = self.history.chunk_by(|a, b| a.phase == b.phase);
         rows.filter_map(|rows| {
             let index = rows.first()?.phase;
-            let slides = match self.scene.phases.get(index)?.motion {
-                Motion::Velocity(velocity) => velocity.amax() != 0.0,
-                Motion::Tangential { amplitude, .. } => amplitude.amax() != 0.0,
-            };
-            slides.then_some((index, rows))
+            (slid(self.scene.phases.get(index)?) > 0.0).then_some((index, rows))
         })
+    }
+}
+
+/// How far a phase takes the indenter along the face between any two moments at most, m; of what was measured, from where it began.
+fn slid(phase: &Phase) -> f64 {
+    match &phase.motion {
+        Motion::Velocity(velocity) => (velocity * phase.duration).norm(),
+        Motion::Tangential { amplitude, .. } => 2.0 * amplitude.norm(),
+        Motion::Measured(record) => record.slid().iter().map(|(_, gone)| gone.norm()).fold(0.0, f64::max),
     }
 }
 
@@ -152,10 +157,7 @@ pub fn stuck_slip(after: &After<'_>) -> Option<Warning> {
     let phases = after.history.chunk_by(|a, b| a.phase == b.phase).filter_map(|rows| {
         let (first, last) = (rows.first()?, rows.last()?);
         let phase = after.scene.phases.get(first.phase)?;
-        let slides = match phase.motion {
-            Motion::Velocity(velocity) => (velocity * phase.duration).norm(),
-            Motion::Tangential { amplitude, .. } => 2.0 * amplitude.norm(),
-        };
+        let slides = slid(phase);
         let motion =
             if slides > 0.0 { slides } else { (last.approach - after.touch).min(last.approach - first.approach) };
         let slip = rows.iter().map(|row| row.stuck_slip).fold(0.0, f64::max);

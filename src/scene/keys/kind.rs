@@ -73,6 +73,10 @@ pub(crate) enum Kind {
     ChoiceOrPair(&'static [&'static str]),
     /// A unit of length.
     LengthUnit,
+    /// The name of a file, or the table that a resolved scene has in its place.
+    FileOrTable(&'static str, &'static Keys),
+    /// Numbers, as many as there are.
+    Numbers(&'static str),
     /// A table.
     Table(&'static Keys),
     /// An array of tables.
@@ -99,6 +103,8 @@ impl Kind {
             | Self::Moments(what)
             | Self::Columns(what)
             | Self::Texts(what)
+            | Self::FileOrTable(what, _)
+            | Self::Numbers(what)
             | Self::Tables(what, _) => what,
             Self::Flag => "true or false",
             Self::Choice(_) | Self::ChoiceOrPair(_) | Self::LengthUnit => "one of its words",
@@ -109,7 +115,9 @@ impl Kind {
     /// The keys of the table that it is.
     pub fn table(&self) -> Option<&'static Keys> {
         match self {
-            Self::Table(keys) | Self::Tables(_, keys) | Self::OneOrTables(keys) => Some(keys),
+            Self::Table(keys) | Self::FileOrTable(_, keys) | Self::Tables(_, keys) | Self::OneOrTables(keys) => {
+                Some(keys)
+            }
             _ => None,
         }
     }

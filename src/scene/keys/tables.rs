@@ -363,6 +363,20 @@ static PHASE: Keys = table(
         one_or_two("velocity", Quantity::any("a velocity in m/s")).default("0.0").about("of the indenter along +x"),
         number("distance", Quantity::positive("a positive distance in m")).about("instead of duration"),
         Key::new("tangential", Kind::Table(&TANGENTIAL)),
+        Key::new("motion", Kind::FileOrTable("the name of a file of measured motion, relative to the scene", &RECORD))
+            .about("instead of approach or normal_force, and velocity"),
+    ],
+);
+
+static RECORD: Keys = table(
+    "The columns of a file of measured motion, as a resolved scene has them.",
+    &[
+        Key::new("file", Kind::Text("the name of the file")),
+        Key::new("time", Kind::Numbers("an array of times in s")).about("since the phase began"),
+        Key::new("approach", Kind::Numbers("an array of approaches in m")),
+        Key::new("normal_force", Kind::Numbers("an array of forces in N/m")),
+        Key::new("sliding_x", Kind::Numbers("an array of displacements in m")),
+        Key::new("sliding_y", Kind::Numbers("an array of displacements in m")),
     ],
 );
 

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use nalgebra::Vector2;
 use toml::Value;
 
-use super::Preset;
+use super::{Preset, record};
 use crate::error::Result;
 use crate::scene::keys::Section;
 use crate::scene::{Motion, Phase, Stepping};
@@ -57,7 +57,7 @@ fn phase(section: &Section, name: String, preset: Option<Preset>) -> Result<Phas
     }
     Ok(Phase {
         name,
-        duration: duration(section, motion)?,
+        duration: duration(section, &motion)?,
         stepping: stepping(section, preset)?,
         approach: section.optional_number("approach")?,
         normal_force: section.optional_number("normal_force")?,
@@ -80,6 +80,13 @@ fn stepping(section: &Section, preset: Option<Preset>) -> Result<Stepping> {
 }
 
 fn motion(section: &Section) -> Result<Motion> {
+    if let Some(value) = section.table().get("motion").filter(|value| !value.is_table()) {
+        return Err(section.must_be("motion", section.what("motion"), value));
+    }
+    if let Some(measured) = section.optional_section("motion")? {
+        record::refuse_beside(section)?;
+        return Ok(Motion::Measured(record::read(section, &measured)?));
+    }
     let Some(tangential) = section.optional_section("tangential")? else {
         return Ok(Motion::Velocity(section.along_the_face("velocity")?.unwrap_or_default()));
     };
@@ -94,13 +101,16 @@ fn motion(section: &Section) -> Result<Motion> {
 }
 
 /// The duration, given as itself or as the distance slid at the velocity of the phase.
-fn duration(section: &Section, motion: Motion) -> Result<f64> {
+fn duration(section: &Section, motion: &Motion) -> Result<f64> {
+    if let Motion::Measured(record) = motion {
+        return record::duration(section, record);
+    }
     let duration = section.optional_number("duration")?;
     let distance = section.optional_number("distance")?;
     match (duration, distance, motion) {
         (Some(_), Some(_), _) => Err(section.error("distance", "give distance or duration, not both")),
         (Some(duration), None, _) => Ok(duration),
-        (None, Some(distance), Motion::Velocity(velocity)) if velocity != Vector2::zeros() => {
+        (None, Some(distance), Motion::Velocity(velocity)) if *velocity != Vector2::zeros() => {
             Ok(distance / velocity.x.hypot(velocity.y))
         }
         (None, Some(_), _) => Err(section.error("distance", "needs a velocity other than 0, or give duration instead")),
