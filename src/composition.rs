@@ -165,13 +165,14 @@ fn assembled<const D: usize>(
     let friction = scene.friction.as_ref().map(friction).transpose()?;
     let laws = Laws { profile: Box::new(surface), penalty: body::penalty(scene, &source), friction };
     let mut interface = Interface::new(source.face(), laws, quadrature(scene.contact.quadrature));
-    let phases = phases(scene, clearance(scene, &mut interface)?);
+    let clearance = clearance(scene, &mut interface)?;
     let solid = Solid { source, dilatation: body::dilatation(scene), regions: materials.regions.clone() };
     let mut problem = match form(scene) {
         Form::Monolithic => monolithic(comm, scene, (solid, materials), interface)?,
         Form::Following => following(comm, scene, (solid, materials), interface, compliances)?,
         Form::Remembering => remembering(comm, scene, (solid, materials), interface)?,
     };
+    let phases = phases(scene, penetration(scene, problem.strategy.as_mut(), clearance)?);
     if scene.output.energy {
         problem.strategy.keep_account(&problem.u)?;
     }
@@ -352,6 +353,19 @@ fn clearance<const D: usize>(scene: &Scene, interface: &mut Interface<D>) -> Res
     Ok(gaps.fold(f64::INFINITY, f64::min))
 }
 
+/// The greatest penetration of the undeformed face that a history asks for, m, by approaches or by forces; only for scenes with adaptive
+/// steps. The indenter touches after an approach by `clearance`, m.
+fn penetration(scene: &Scene, strategy: &mut dyn TransientProblem, clearance: f64) -> Result<f64> {
+    let force = scene.greatest_force();
+    let pressed = match scene.is_adaptive() && force > 0.0 {
+        true => strategy.approach_under(force, scene.duration())?,
+        false => f64::NEG_INFINITY,
+    };
+    let deepest = scene.deepest().max(pressed) - clearance;
+    // What never touches, or just so, is given its way of getting there.
+    Ok(if deepest > 0.0 { deepest } else { clearance.abs().max(1e-200) })
+}
+
 /// The phases end to end, each from where the one before left the indenter, without their steps.
 pub fn course(scene: &Scene) -> Vec<Phase> {
     let (mut start, mut approach, mut sliding, mut held) = (0.0, 0.0, Vector2::zeros(), None);
@@ -420,12 +434,9 @@ fn moments(phase: &Phase, bulk: &[f64], adaptive: bool) -> Vec<Moment> {
     all
 }
 
-/// The phases with their steps; a step ends at every moment that bulk output asks for. The indenter touches after an
-/// approach by `clearance`, m.
-pub fn phases(scene: &Scene, clearance: f64) -> Vec<Phase> {
-    let deepest = scene.deepest() - clearance;
-    // What never touches, or just so, is given its way of getting there.
-    let scale = if deepest > 0.0 { deepest } else { clearance.abs().max(1e-200) };
+/// The phases with their steps; a step ends at every moment that bulk output asks for. Tolerances are shares of a penetration `scale`, m.
+pub fn phases(scene: &Scene, scale: f64) -> Vec<Phase> {
+    let greatest = scene.greatest_force();
     let mut rates = (0.0, Vector2::zeros());
     let at = &scene.output.bulk_at;
     let moment = |when: &When| if let When::Time(t) = when { Some(*t) } else { None };
@@ -444,7 +455,10 @@ pub fn phases(scene: &Scene, clearance: f64) -> Vec<Phase> {
             last.bulk_output |= ends.contains(phase.name.as_str());
         }
         let after = phase.rates(phase.start);
-        let jump = (after.0 - rates.0).abs() + (after.1 - rates.1).norm();
+        // A force that rises presses the indenter in at about this rate.
+        let pressed = phase.force.map_or(0.0, |[from, to]| (to - from).abs() / greatest * scale / phase.duration);
+        let pressed = if greatest > 0.0 { pressed } else { 0.0 };
+        let jump = (after.0 - rates.0).abs() + (after.1 - rates.1).norm() + pressed;
         phase.adaptive = tolerance.map(|tolerance| Adaptive::new(phase, tolerance * scale, jump));
         rates = phase.rates(phase.end());
     }

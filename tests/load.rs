@@ -3,25 +3,32 @@
 
 mod common;
 
-use common::program::Run;
+use common::program::{Outcome, Run, assert_same};
 
-/// A layer of 1 m x 1 m, one arm of the paper's Table 1, nu = 0.3 constant, under a flat indenter.
-const FLAT: &str = r#"
+/// A layer of 1 m x 1 m, one arm of the paper's Table 1, nu = 0.3 constant, under an indenter by its formula.
+fn layer(cells: &str, formula: &str) -> String {
+    format!(
+        r#"
 [layer]
 width = 1.0
 depth = 1.0
-cells = [16, 8]
+cells = {cells}
 sides = "periodic"
 [material]
 shear_modulus = 568.498
 poisson_ratio = 0.3
-arms = [ { weight = 0.579, time = 0.817 } ]
+arms = [ {{ weight = 0.579, time = 0.817 }} ]
 poisson_rule = "constant_ratio"
 [indenter]
 profile = "expression"
-formula = "0*x"
+formula = "{formula}"
 [contact]
-penalty = 1e6
+"#
+    )
+}
+
+/// A jump to 0.5 N/m, held.
+const HELD: &str = r#"
 [[phase]]
 name = "jump"
 duration = 1e-9
@@ -32,6 +39,11 @@ name = "creep"
 duration = 5.0
 steps = 50
 "#;
+
+/// Under a flat indenter, with a penalty.
+fn flat() -> String {
+    layer("[16, 8]", "0*x") + "penalty = 1e6\n" + HELD
+}
 
 /// D = N (C0 j(t) + 1/alpha), C0 = H (1 - 2 nu)/(2 G (1 - nu)), j = (1 - mu_1 exp(-mu_0 t/tau))/mu_0 the creep of the layer: 2.51789e-4 m at
 /// once. After 5 s in 50, 100 steps backward Euler is off by 3.1e-3, 1.5e-3 of it and the exponential memory by 3.6e-5,
@@ -44,7 +56,7 @@ fn a_layer_creeps_under_a_step_of_load() {
     assert!((exact(0.0) - 2.51789e-4).abs() < 1e-9);
     let apart = |memory: &str, steps: usize| {
         let run =
-            Run::new(FLAT).set(format!("material.memory={memory}")).set(format!("phase.creep.steps={steps}")).done();
+            Run::new(&flat()).set(format!("material.memory={memory}")).set(format!("phase.creep.steps={steps}")).done();
         assert!((run.at(1e-9, "approach") / exact(0.0) - 1.0).abs() < 1e-8);
         assert!(run.history("normal_force").iter().skip(1).all(|force| (force / 0.5 - 1.0).abs() < 1e-12));
         run.last("approach") / exact(5.0) - 1.0
@@ -64,8 +76,8 @@ fn a_layer_creeps_under_a_step_of_load() {
 /// of the face after 0 and 5 s; this layer is softer by 1.0e-4 and 7e-5.
 #[test]
 fn a_cosine_sinks_in_as_lee_and_radok_say() {
-    let scene = FLAT.replace("0*x", "5e-4*(1-cos(2*pi*x))").replace("penalty = 1e6", "");
-    let run = Run::new(&scene).set("layer.cells=[256,128]").set("phase.creep.steps=100").done();
+    let scene = layer("[256, 128]", "5e-4*(1-cos(2*pi*x))") + HELD;
+    let run = Run::new(&scene).set("phase.creep.steps=100").done();
     for (t, approach, fraction) in
         [(1e-9, 5.089689e-4 * (1.0 - 1.0e-4), 0.29195), (5.0, 9.732573e-4 * (1.0 - 7e-5), 0.46491)]
     {
@@ -79,24 +91,7 @@ fn a_cosine_sinks_in_as_lee_and_radok_say() {
 }
 
 /// Not yet in touch, pressed, slid, held by its approach, by a force again, let go and left alone.
-const HISTORY: &str = r#"
-[layer]
-width = 1.0
-depth = 1.0
-cells = [48, 24]
-sides = "periodic"
-[material]
-shear_modulus = 568.498
-poisson_ratio = 0.3
-arms = [ { weight = 0.579, time = 0.817 } ]
-poisson_rule = "constant_ratio"
-[indenter]
-profile = "expression"
-formula = "1e-3+5e-4*(1-cos(2*pi*x))"
-[contact]
-[friction]
-law = "coulomb"
-coefficient = 0.2
+const PHASES: &str = r#"
 [[phase]]
 name = "near"
 approach = 5e-4
@@ -132,12 +127,16 @@ steps = 10
 name = "rest"
 duration = 3.0
 steps = 10
-[solver]
-tolerance = 1e-11
 "#;
 
+/// Under a wave, with Coulomb's law.
+fn rubbed() -> String {
+    layer("[48, 24]", "1e-3+5e-4*(1-cos(2*pi*x))")
+        + "[friction]\nlaw = \"coulomb\"\ncoefficient = 0.2\n[solver]\ntolerance = 1e-11\n"
+}
+
 fn history() -> Run {
-    Run::new(HISTORY)
+    Run::new(&(rubbed() + PHASES))
 }
 
 /// Forces rise linearly from what there is, are held by phases that say nothing, and Coulomb's law holds in gross sliding; an
@@ -163,8 +162,7 @@ fn force_and_approach_take_turns() {
 /// The approach that a ramp of the load traced gives that load when it is replayed step by step; and 1 to 3 ranks agree.
 #[test]
 fn a_load_is_that_of_its_approach() {
-    let scene =
-        HISTORY.split("[[phase]]\nname = \"near\"").next().unwrap().to_owned() + "[solver]\ntolerance = 1e-11\n";
+    let scene = rubbed();
     let loaded = Run::new(&(scene.clone() + "[[phase]]\nduration = 2.0\nsteps = 20\nnormal_force = 0.5\n")).done();
     let approach = loaded.history("approach");
     let steps = approach.iter().skip(1).map(|d| format!("[[phase]]\nduration = 0.1\nsteps = 1\napproach = {d:?}\n"));
@@ -182,11 +180,48 @@ fn a_load_is_that_of_its_approach() {
     }
 }
 
+/// Steps that are chosen follow forces and approaches that take turns, by a share of the greatest penetration, 1.4e-3 m, that is known before the
+/// first step; against 16 times the planned steps. One to four ranks choose the same.
+#[test]
+fn chosen_steps_follow_a_force() {
+    let fine = history();
+    let counts = [("near", 2), ("load", 20), ("slide", 60), ("sink", 10), ("back", 20), ("off", 10), ("rest", 10)];
+    let fine =
+        counts.iter().fold(fine, |run, (name, steps)| run.set(format!("phase.{name}.steps={}", 16 * steps))).done();
+    let chosen = |tolerance: f64| {
+        let each = |run: Run, (name, _): &(&str, i32)| {
+            run.set(format!("phase.{name}.steps=")).set(format!("phase.{name}.tolerance={tolerance:?}"))
+        };
+        counts.iter().fold(history(), each)
+    };
+    let ends = [1.0, 3.0, 18.0, 19.0, 20.0, 21.0, 24.0];
+    let mut last = f64::INFINITY;
+    for tolerance in [1e-2, 1e-3, 1e-4] {
+        let run = chosen(tolerance).done();
+        let apart = |column: &str, size: f64| {
+            let off = |time: &f64| (run.at(*time, column) - fine.at(*time, column)).abs() / size;
+            ends.iter().map(off).fold(0.0, f64::max)
+        };
+        let found = [apart("approach", 1.4e-3), apart("normal_force", 0.5), apart("tangential_force", 0.1)];
+        println!("{tolerance}: {found:?} in {} steps", run.history("time").len() - 1);
+        let worst = found.into_iter().fold(0.0, f64::max);
+        assert!(worst < 0.2 * tolerance && worst < last, "{tolerance}: {found:?}");
+        last = worst;
+        if tolerance == 1e-3 {
+            for ranks in [2, 4] {
+                let together = chosen(tolerance).ranks(ranks).done();
+                let file = |run: &Outcome| run.directory.path().join("scene.h5");
+                assert_same(&file(&run), &file(&together), 1e-9);
+            }
+        }
+    }
+}
+
 /// A force that only a body thicker than this one could bear ends the run with code 3, and says so; tension, and a force beside an
 /// approach, are errors of the scene.
 #[test]
 fn a_load_that_no_contact_carries_is_refused() {
-    let outcome = Run::new(FLAT).set("phase.jump.normal_force=5e3").run();
+    let outcome = Run::new(&flat()).set("phase.jump.normal_force=5e3").run();
     assert_eq!(outcome.code, 3, "{outcome:?}");
     assert!(outcome.stderr.contains("which no contact carries"), "{}", outcome.stderr);
     for (set, message) in [
@@ -197,7 +232,7 @@ fn a_load_that_no_contact_carries_is_refused() {
         ("phase.jump.approach=1e-3", "phase.jump.normal_force: give approach or normal_force, not both"),
         ("solver.strategy=monolithic", "phase.jump.normal_force: is not held by the strategy \"monolithic\" yet"),
     ] {
-        let outcome = Run::new(FLAT).set(set).run();
+        let outcome = Run::new(&flat()).set(set).run();
         assert!(outcome.code == 2 && outcome.stderr.contains(message), "{set}: {}", outcome.stderr);
     }
 }

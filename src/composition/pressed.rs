@@ -59,7 +59,8 @@ fn first(surface: &dyn Surface, scene: &Scene, outline: &Outline) -> Option<Pres
         };
         nodes.iter().find(presses).map(|&(place, _)| PressedEnd { place: name(place), time })
     };
-    phases(scene, 0.0).iter().find_map(|phase| match phase.adaptive {
+    // Adaptive steps are not looked at, whatever their tolerance is a share of.
+    phases(scene, 1.0).iter().find_map(|phase| match phase.adaptive {
         Some(_) => {
             let times = (1..=MOMENTS).map(|i| phase.start + phase.duration * f64::from(i) / f64::from(MOMENTS));
             times.into_iter().find_map(|time| pressed(phase, time))

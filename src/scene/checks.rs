@@ -218,7 +218,7 @@ fn adaptive(scene: &Scene) -> Check {
     Ok(())
 }
 
-/// A force or a mount holds the indenter by the condensed strategy, in planned steps; not both of them along the approach.
+/// A force or a mount holds the indenter by the condensed strategy, a mount in planned steps; not both of them along the approach.
 fn load(scene: &Scene) -> Check {
     let forced = scene.phases.iter().find(|phase| phase.says_force());
     let key = match (forced, &scene.mount) {
@@ -232,8 +232,8 @@ fn load(scene: &Scene) -> Check {
     if scene.solver.strategy == Strategy::Monolithic {
         return fail(&key, "is not held by the strategy \"monolithic\" yet; use \"condensed\"");
     }
-    if scene.is_adaptive() {
-        return fail(&key, "is not held in adaptive steps yet; give steps in all phases");
+    if scene.is_adaptive() && scene.mount.is_some() {
+        return fail("mount", "is not held in adaptive steps yet; give steps in all phases");
     }
     Ok(())
 }

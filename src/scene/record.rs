@@ -75,6 +75,11 @@ impl Phase {
         self.told(|record| &record.approach, self.approach)
     }
 
+    /// The same of the normal forces, N/m.
+    pub fn forces(&self) -> Vec<(f64, f64)> {
+        self.told(|record| &record.normal_force, self.normal_force)
+    }
+
     fn told(&self, column: impl Fn(&Record) -> &Vec<f64>, at_its_end: Option<f64>) -> Vec<(f64, f64)> {
         let measured = self.record().map(|record| {
             // Up to the row that the last stretch of the phase leads to.

@@ -63,6 +63,11 @@ impl Scene {
         self.phases.iter().flat_map(Phase::approaches).map(|(_, approach)| approach).fold(0.0, f64::max)
     }
 
+    /// The greatest normal force of all phases, N/m.
+    pub fn greatest_force(&self) -> f64 {
+        self.phases.iter().flat_map(Phase::forces).map(|(_, force)| force).fold(0.0, f64::max)
+    }
+
     /// Whether a force, or a mount, holds the indenter along the approach at any time.
     pub fn is_loaded(&self) -> bool {
         self.phases.iter().any(Phase::says_force) || self.mount.is_some_and(|mount| mount.normal.is_some())
@@ -80,7 +85,9 @@ impl Scene {
             When::PhaseEnd(name) => part.phases.iter().any(|phase| phase.name == *name),
             When::Time(time) => *time <= end + near,
         });
-        (!part.is_adaptive() || part.deepest() == self.deepest()).then_some(part)
+        // Under a force adaptive steps depend on how long it is held, too.
+        let same_steps = part.deepest() == self.deepest() && self.greatest_force() == 0.0;
+        (!part.is_adaptive() || same_steps).then_some(part)
     }
 
     /// Moments that round-off put just after the end of the history are its end.

@@ -19,6 +19,7 @@ use crate::error::{Error, Result};
 use crate::friction::Law;
 use crate::interface::{Interface, State};
 use crate::loading::{DIRECTIONS, Mount, Phase, Placement, Support};
+use crate::parallel::share_numbers;
 use crate::petsc::{Gather, Matrix, Step, Vector, Verdict};
 use crate::profile::Height;
 use crate::snapshot::Snapshot;
@@ -465,6 +466,13 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
         ends.resize(self.face.displacement().len(), 0.0);
         self.comm.process_at_rank(0).broadcast_into(&mut ends[..]);
         Ok(self.face.departure(step, &ends))
+    }
+
+    fn approach_under(&mut self, force: f64, duration: f64) -> Result<f64> {
+        self.response.prepare(Step { t: duration, dt: duration })?;
+        self.face.interface.place(Placement::default())?;
+        let approach = || self.behind().map(|behind| traction::approach_under(&behind, force)).transpose();
+        Ok(share_numbers(&self.comm, || Ok(approach()?.into_iter().collect()))?.first().copied().unwrap_or(0.0))
     }
 
     /// What is accepted are the tractions that the laws made of the last ones: they keep the laws to the last digit.

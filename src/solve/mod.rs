@@ -64,6 +64,10 @@ pub trait TransientProblem {
     /// How far `u`, at the end of a step from the accepted state, is from where the accepted rates would have taken the
     /// face, m.
     fn departure(&mut self, step: Step, u: &Vector) -> Result<f64>;
+    /// About how far a force, N/m, that is held for so many seconds presses the indenter down on the body at rest, m. Collective.
+    fn approach_under(&mut self, _force: f64, _duration: f64) -> Result<f64> {
+        Err(Error::Internal("this problem holds no force".into()))
+    }
     /// Takes the accepted state to the end of an accepted step; `u` may be brought to where the laws hold to the last digit.
     fn commit(&mut self, step: Step, u: &mut Vector) -> Result<()>;
     /// Keeps account of the energy from here on, at rest; `layout` is that of the solution.

@@ -21,6 +21,7 @@ mod fold;
 mod fourier;
 mod held;
 mod linear;
+mod pressed;
 mod search;
 mod sweep;
 
@@ -37,6 +38,7 @@ pub use fold::jumped;
 pub use fourier::Fourier;
 pub use held::{Border, Held, Over, against, axis, in_plane, modulus, shift, touch, up};
 pub use linear::{Linearised, product};
+pub use pressed::approach_under;
 pub use search::{Operator, Outcome, area, length, settle};
 
 /// A point of the contact during a step.
