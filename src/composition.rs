@@ -265,8 +265,9 @@ fn condensed<const D: usize, R: Response<D> + 'static>(
     let periodic = scene.layer().is_some_and(scene::Layer::is_periodic);
     let components = D * interface.face().count();
     let linear = match components > if periodic { LARGE_PERIODIC_FACE } else { LARGE_FACE } {
-        // Where a product costs next to nothing, Newton's method need not wait for exact steps.
-        true if components <= LARGE_FACE => Linear::OwnIterative(1e-6),
+        // Where a product costs next to nothing, Newton's method need not wait for exact steps; a step from a guess that is a hundredth off
+        // should end below its tolerance.
+        true if components <= LARGE_FACE => Linear::OwnIterative(1e-7),
         true => Linear::OwnIterative(1e-2),
         false => Linear::Own,
     };

@@ -19,6 +19,7 @@
 //!
 //! dz stands in the system times a modulus kappa, and the equations over the area, so that all are pressures.
 
+use std::cell::OnceCell;
 use std::fmt;
 
 use nalgebra::{Matrix3, SVector, Vector2, Vector3};
@@ -151,6 +152,8 @@ pub struct Border<const D: usize> {
     products: [Vec<SVector<f64, D>>; DIRECTIONS],
     /// k/kappa over the area; that of a direction whose place is given is 1.
     stiffness: Matrix3<f64>,
+    /// b of each direction, once it was asked for.
+    answers: OnceCell<[Vec<SVector<f64, D>>; DIRECTIONS]>,
     /// kappa, Pa/m.
     pub modulus: f64,
 }
@@ -182,7 +185,8 @@ impl<const D: usize> Border<D> {
                 stiffness[(direction, along)] += steeper[direction - 1];
             }
         }
-        Some(Self { held: held.supports.map(|support| support.is_some()), columns, products, stiffness, modulus })
+        let held = held.supports.map(|support| support.is_some());
+        Some(Self { held, columns, products, stiffness, answers: OnceCell::new(), modulus })
     }
 
     /// The product of the bordered system with (dt, kappa dz), of which `product` is J dt.
@@ -199,8 +203,8 @@ impl<const D: usize> Border<D> {
         std::array::from_fn(|direction| self.row(sites, direction, dt) + borne[direction])
     }
 
-    /// The solution of the bordered system, by what solves that without borders; none where nothing touches that a force is to
-    /// press on.
+    /// The solution of the bordered system, by what solves that without borders, always the same; none where nothing touches that
+    /// a force is to press on.
     pub fn solve(
         &self,
         sites: &[Site<D>],
@@ -208,10 +212,7 @@ impl<const D: usize> Border<D> {
         inverse: impl Fn(&[SVector<f64, D>]) -> Result<Vec<SVector<f64, D>>>,
     ) -> Result<Option<Bordered<D>>> {
         let mut a = inverse(right)?;
-        let mut b = [const { Vec::new() }; DIRECTIONS];
-        for direction in (0..DIRECTIONS).filter(|direction| self.held[*direction]) {
-            b[direction] = inverse(&self.products[direction])?;
-        }
+        let b = self.answers(inverse)?;
         let small = self.stiffness - Matrix3::from_fn(|i, j| self.row(sites, i, &b[j]));
         let rest = Vector3::from_fn(|i, _| unbalance[i] - self.row(sites, i, &a));
         let Some(gone) = small.try_inverse().map(|inverse| inverse * rest) else { return Ok(None) };
@@ -219,6 +220,21 @@ impl<const D: usize> Border<D> {
             a.iter_mut().zip(b).for_each(|(a, b)| *a -= b * *gone);
         }
         Ok(Some((a, gone.into())))
+    }
+
+    /// b, which is had once for all right sides: GMRES asks for several.
+    fn answers(
+        &self,
+        inverse: impl Fn(&[SVector<f64, D>]) -> Result<Vec<SVector<f64, D>>>,
+    ) -> Result<&[Vec<SVector<f64, D>>; DIRECTIONS]> {
+        if let Some(known) = self.answers.get() {
+            return Ok(known);
+        }
+        let mut b = [const { Vec::new() }; DIRECTIONS];
+        for direction in (0..DIRECTIONS).filter(|direction| self.held[*direction]) {
+            b[direction] = inverse(&self.products[direction])?;
+        }
+        Ok(self.answers.get_or_init(|| b))
     }
 
     /// l dt over the area.
