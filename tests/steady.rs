@@ -158,7 +158,7 @@ fn the_arms_take_the_work_of_the_indenter() {
 }
 
 /// Long transients on the same cells end in the steady state, averaged over the steps that pass one node spacing: three arms, both rules,
-/// friction, five velocities; a coefficient that falls with the pressure; a held load. With the mean of the steady
+/// friction, five velocities; a coefficient that falls with the pressure; a held load, too, at five velocities. With the mean of the steady
 /// states at eight places of the crest between two nodes, N, Q and the approach agree to 2e-5, the hysteretic force to 1e-6 of the load.
 fn long_transients_end_in_the_steady_state() {
     let arms = format!("material.arms={THREE_ARMS}");
@@ -168,7 +168,11 @@ fn long_transients_end_in_the_steady_state() {
         cases.extend([3e-3, 1e-2, 3e-2, 0.1, 0.3].map(|velocity| (vec![arms.clone(), rule.clone()], velocity)));
     }
     cases.push((vec!["friction.coefficient=0.1 + 0.3*exp(-p)".into()], 0.1));
-    cases.push((vec!["phase.press.approach=".into(), "phase.press.normal_force=0.5".into()], 0.1));
+    for (rule, velocity) in RULES.into_iter().cycle().zip([3e-3, 1e-2, 3e-2, 0.1, 0.3]) {
+        let rule = format!("material.poisson_rule=\"{}\"", named(rule));
+        let load = ["phase.press.approach=".into(), "phase.press.normal_force=0.5".into()];
+        cases.push(([&[arms.clone(), rule][..], &load].concat(), velocity));
+    }
     let per_spacing = 8;
     for (changes, velocity) in cases {
         // 20 times the longest relaxation time that there is, and half a wave at least.

@@ -10,6 +10,7 @@ mod curve;
 mod half_space;
 mod kernel;
 mod load;
+mod mount;
 mod relaxation;
 mod setting;
 mod sliding;
@@ -179,6 +180,7 @@ pub fn cases(quick: bool) -> Result<Vec<Case>> {
     list.extend(curve::cases(quick));
     list.extend(sliding::cases(quick));
     list.extend(load::cases(quick));
+    list.extend(mount::cases(quick));
     Ok(list)
 }
 

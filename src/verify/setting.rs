@@ -31,6 +31,8 @@ pub struct Setting {
     pub friction: Option<Friction>,
     /// Whether the elements are those for Poisson ratios near 1/2.
     pub mean_dilatation: bool,
+    /// The table of what is between the indenter and what moves it.
+    pub mount: Option<&'static str>,
     /// The phases, in order.
     pub phases: Vec<Phase>,
 }
@@ -110,6 +112,7 @@ impl Setting {
             penalty: Some(1e8),
             friction: None,
             mean_dilatation: false,
+            mount: None,
             phases,
         }
     }
@@ -173,6 +176,9 @@ impl Setting {
         // Writing to a string cannot fail.
         if let Some(friction) = &self.friction {
             let _ = writeln!(text, "[friction]\n{}", toml::to_string(friction).unwrap_or_default());
+        }
+        if let Some(mount) = self.mount {
+            let _ = writeln!(text, "[mount]\n{mount}");
         }
         for Phase { duration, steps, approach, force, velocity } in &self.phases {
             let held = force.map_or(format!("approach = {approach:?}"), |force| format!("normal_force = {force:?}"));
