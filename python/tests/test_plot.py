@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
 
 import matplotlib.pyplot as pyplot
@@ -31,12 +32,54 @@ def test_curves_are_the_columns(run: xarray.DataTree) -> None:
     pyplot.close(axes.figure)
 
 
+def test_stick_is_what_the_program_counts(scene: mpjr.Scene, tmp_path: Path) -> None:
+    """The share of the contact that is drawn as sticking is the stick_fraction of the history, with each law."""
+    laws = [
+        {"law": "coulomb_elastic_slip", "coefficient": 0.2, "elastic_slip": 1e-5},
+        {"law": "coulomb_tanh", "coefficient": 0.2, "regularisation": 1e-5},
+        {"law": "coulomb", "coefficient": 0.2},
+        {"law": "coulomb", "coefficient": "0.2 + 0.1*exp(-v/1e-3)"},
+    ]
+    scene["layer.cells"] = [64, 16]
+    scene["phase.slide.distance"] = 2e-4
+    for number, law in enumerate(laws):
+        scene["friction"] = law
+        run = mpjr.run(scene, tmp_path / f"{number}.h5", progress=False)
+        state = plot.stick_slip(run).collections[0].get_array().reshape(64, -1)
+        contact, stick = (state > 0).sum(0), (state == 1).sum(0)
+        history = run["history"].to_dataset().sel(time=run["interface/time"].values)
+        numpy.testing.assert_allclose(stick / contact.clip(1), history["stick_fraction"], atol=1e-12, err_msg=str(law))
+        assert 0 < stick.sum() < contact.sum(), f"{law}: {stick} of {contact}"
+        pyplot.close("all")
+
+
 def test_figures_of_a_sweep(scene: mpjr.Scene, tmp_path: Path) -> None:
-    found = mpjr.sweep(scene, {"phase.slide.velocity": [1e-3, 1e-1]}, tmp_path / "cases", progress=False)
+    """Total friction less the hysteretic is Coulomb's coefficient, 0.2; as `mpjr plot` has it, over the end of sliding."""
+    vary = {"layer.depth": [0.5, 1.0], "phase.slide.velocity": [1e-3, 1e-1]}
+    found = mpjr.sweep(scene, vary, tmp_path / "cases", progress=False)
     axes = plot.friction(found)
-    assert axes.get_xscale() == "log" and numpy.allclose(axes.lines[0].get_ydata(), 0.2, rtol=1e-6)
-    assert len(plot.onset(found).lines) == 2
+    assert axes.get_xscale() == "log" and len(axes.lines) == 4
+    for hysteretic, total in [axes.lines[:2], axes.lines[2:]]:
+        assert numpy.array_equal(total.get_xdata(), [1e-3, 1e-1])
+        numpy.testing.assert_allclose(total.get_ydata() - hysteretic.get_ydata(), 0.2, rtol=1e-6)
+    with found[0] as case:
+        last = case["history"].to_dataset().isel(time=-1)
+        # One step is a quarter of the phase, longer than the end that is averaged.
+        expected = float(last["hysteretic_force"] / last["normal_force"])
+        assert axes.lines[0].get_ydata()[0] == pytest.approx(expected, rel=1e-12)
+    axes = plot.onset(found)
+    assert len(axes.lines) == 4 and "mm" in axes.get_xlabel()
+    # 1 m in all, from the last row before the indenter moves on.
+    displacement = axes.lines[0].get_xdata()
+    assert displacement[0] == 0.0 and displacement[-1] == pytest.approx(1e3)
     pyplot.close("all")
+
+
+def test_names_are_those_of_the_program() -> None:
+    """Each figure has the name that it has for ``mpjr plot``."""
+    told = subprocess.run([mpjr.program(), "plot", "--help"], capture_output=True, text=True, check=True).stdout
+    names = {line.split()[0] for line in told.splitlines() if line.startswith("  ") and line.split()}
+    assert {name.replace("_", "-") for name in plot.__all__} <= names
 
 
 def test_figures_in_space(tmp_path: Path) -> None:

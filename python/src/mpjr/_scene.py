@@ -61,7 +61,7 @@ class Scene:
 
     @classmethod
     def like(cls, kind: str = "layer") -> Scene:
-        """A first scene, as ``mpjr new --like KIND``: ``layer``, ``wheel``, ``rough`` or ``laminate``."""
+        """A first scene, as ``mpjr new --like KIND``: ``layer``, ``wheel``, ``rough``, ``laminate`` or ``space``."""
         with tempfile.TemporaryDirectory() as directory:
             path = Path(directory) / "scene.toml"
             call(["new", str(path), "--like", kind])

@@ -13,6 +13,8 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.tri import Triangulation
 
+from ._results import scene_of
+
 if TYPE_CHECKING:
     from ._run import Sweep
 
@@ -29,6 +31,10 @@ __all__ = [
     "stress",
     "tractions",
 ]
+
+
+#: The share of the last phase over which the ends of cases are averaged.
+END = 0.1
 
 
 def _axes(axes: Axes | None) -> Axes:
@@ -127,18 +133,13 @@ def gap(run: xarray.DataTree, time: float | None = None, axes: Axes | None = Non
 
 
 def stick_slip(run: xarray.DataTree, axes: Axes | None = None, *, time: float | None = None) -> Axes:
-    """Stick, slip and no contact, x against time; in space from above at the stored moment nearest to ``time``, s.
-
-    A point in contact counts as sticking below a thousandth of the fastest slip rate at that moment.
+    """Stick, slip and no contact, as ``stick_fraction`` of the history counts them: x against time; in space from above at the stored
+    moment nearest to ``time``, s.
     """
     axes = _axes(axes)
     in_space = "x" not in run["interface"].variables
     table = _from_above(run, time) if in_space else run["interface"].to_dataset()
-    rate: Any = abs(table["slip_rate"])
-    if in_space:
-        rate = _magnitude(table["slip_rate"])
-    slips = (rate > 1e-3 * (rate.max() if in_space else rate.max("x"))).astype(int)
-    state = (table["pressure"] > 0).astype(int) * (1 + slips)
+    state = (table["pressure"] > 0).astype(int) * (2 - _sticks(run, table).astype(int))
     colours = pyplot.get_cmap("viridis_r", 3)
     over, up = ("x", "y") if in_space else ("time", "x")
     image = axes.pcolormesh(table[over], table[up], state.transpose(up, over), cmap=colours, vmin=-0.5, vmax=2.5)
@@ -170,31 +171,70 @@ def stress(
 
 
 def onset(sweep: Sweep, axes: Axes | None = None) -> Axes:
-    """The tangential force of each case against time."""
+    """From stick to slip: the tangential force of each case against the displacement of the indenter, after the approach."""
     axes = _axes(axes)
     for case in range(len(sweep)):
         with sweep[case] as run:
+            table = _in_plane(run, "history")
+            moves = numpy.append(table["sliding"].values != 0, True)
+            table = table.isel(time=slice(max(int(numpy.argmax(moves)) - 1, 0), None))
             label = ", ".join(f"{key.split('.')[-1]} = {sweep.summary[key].values[case]}" for key in sweep.keys)
-            axes.plot(run["history/time"], run["history/tangential_force"], label=label)
-            units = run["history/tangential_force"].attrs["units"]
-    axes.set(xlabel="time, s", ylabel=f"Q, {units}")
+            axes.plot(1e3 * table["sliding"], table["tangential_force"], label=label)
+            units = table["tangential_force"].attrs["units"]
+    axes.set(xlabel="displacement of the indenter, mm", ylabel=f"Q, {units}")
     axes.legend()
     return axes
 
 
 def friction(sweep: Sweep, axes: Axes | None = None) -> Axes:
-    """Tangential and hysteretic force over the normal force at the end of each case, against the last varied key."""
+    """Hysteretic and total friction, over the normal force, against the last varied key; a line for each value of the others.
+
+    Each is the mean over the last tenth of the last phase.
+    """
     axes = _axes(axes)
-    table = sweep.summary
-    key = sweep.keys[-1]
-    for name, label in [("tangential_force", "Q/N"), ("hysteretic_force", "hysteretic/N")]:
-        axes.plot(table[key], table[name] / table["normal_force"], "o-", label=label)
-    values: Any = table[key].values
-    if values.dtype.kind == "f" and values.min() > 0 and values.max() > 20 * values.min():
+    *others, key = sweep.keys
+    forces = numpy.array([_at_the_end(sweep, case) for case in range(len(sweep))])
+    along: Any = sweep.summary[key].values
+    series: dict[str, list[int]] = {}
+    for case in range(len(sweep)):
+        name = ", ".join(f"{other.split('.')[-1]} = {sweep.summary[other].values[case]}" for other in others)
+        series.setdefault(name, []).append(case)
+    for name, cases in series.items():
+        normal, tangential, hysteretic = forces[cases].T
+        for label, values in [("hysteretic", hysteretic), ("total", tangential + hysteretic)]:
+            axes.plot(along[cases], values / normal, "o-", label=f"{label}, {name}" if name else label)
+    if along.dtype.kind == "f" and along.min() > 0 and along.max() > 20 * along.min():
         axes.set_xscale("log")
-    axes.set(xlabel=key, ylabel="friction")
+    axes.set(xlabel=key, ylabel="friction over N")
     axes.legend()
     return axes
+
+
+def _at_the_end(sweep: Sweep, case: int) -> list[float]:
+    """Normal, tangential and hysteretic force of a case: the means over the last tenth of its last phase."""
+    with sweep[case] as run:
+        table = _in_plane(run, "history")
+        time, phase = table["time"].values, table["phase"].values
+        start = time[numpy.argmax(phase == phase[-1])]
+        end = table.isel(time=time >= time[-1] - END * (time[-1] - start))
+        return [float(end[name].mean()) for name in ("normal_force", "tangential_force", "hysteretic_force")]
+
+
+def _sticks(run: xarray.DataTree, table: xarray.Dataset) -> xarray.DataArray:
+    """Where points in contact stick."""
+    law = scene_of(run).get("friction")
+    shear, rate = (_magnitude(table[name]) for name in ("shear", "slip_rate"))
+    sticks: xarray.DataArray
+    if law is None:
+        sticks = xarray.zeros_like(table["pressure"], dtype=bool)
+    elif law["law"] == "coulomb_tanh":
+        sticks = rate < law["regularisation"]
+    elif isinstance(law["coefficient"], str):
+        sticks = rate == 0.0
+    else:
+        # Up to round-off.
+        sticks = shear < (1 - 1e-12) * law["coefficient"] * table["pressure"]
+    return sticks
 
 
 def _in_plane(run: xarray.DataTree, group: str) -> xarray.Dataset:
@@ -235,8 +275,8 @@ def _line(run: xarray.DataTree, time: float | None, along: str) -> tuple[xarray.
 
 
 def _magnitude(field: Any) -> Any:
-    """Of a vector along the face."""
-    return numpy.sqrt((field**2).sum("direction"))
+    """Of a number, or of a vector along the face."""
+    return numpy.sqrt((field**2).sum("direction")) if "direction" in field.dims else abs(field)
 
 
 def _map(frame: xarray.Dataset, field: Any, axes: Axes | None) -> Axes:
