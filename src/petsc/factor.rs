@@ -9,6 +9,7 @@ use mpi::traits::{AsRaw, Communicator};
 use super::error::check;
 use super::ffi;
 use super::matrix::Matrix;
+use super::number::{self, count, narrow};
 use super::vector::Vector;
 use crate::error::Result;
 
@@ -72,7 +73,7 @@ impl Cholesky {
         let units = OnFirst::units(comm, self.order()?, columns)?;
         let (mut own, mut solutions, mut array) = (0, null_mut(), null());
         let mut values = Vec::with_capacity(local.len() * columns.len());
-        let count = columns.len() as ffi::PetscInt;
+        let count = count(columns.len())?;
         // SAFETY: a factorised matrix, right-hand sides of its order that the first rank holds, and a dense matrix of its row
         // layout, which lends its columns one after the other and is destroyed here.
         unsafe {
@@ -102,19 +103,19 @@ impl Cholesky {
         let mut order = 0;
         // SAFETY: a live matrix and a place for the number.
         unsafe { check(ffi::MatGetSize(self.raw, &mut order, null_mut()))? };
-        Ok(order)
+        narrow(order)
     }
 
     /// The factorisation, and the rows and columns `kept` of matrix^-1, column-major: the inverse of the Schur
     /// complement onto those unknowns. On one rank only.
     pub fn with_inverse_schur(matrix: &Matrix, kept: &[i32]) -> Result<(Self, Vec<f64>)> {
-        let count = kept.len() as ffi::PetscInt;
+        let (count, indices) = (count(kept.len())?, number::indices(kept));
         let mut factor = Self::symbolic(matrix, |raw| {
             let mut set = null_mut();
             // SAFETY: the index set copies `kept`; the factor takes a reference to it.
             unsafe {
                 let copy = ffi::PetscCopyMode_PETSC_COPY_VALUES;
-                check(ffi::ISCreateGeneral(mpi_sys::RSMPI_COMM_SELF, count, kept.as_ptr(), copy, &mut set))?;
+                check(ffi::ISCreateGeneral(mpi_sys::RSMPI_COMM_SELF, count, indices.as_ptr(), copy, &mut set))?;
                 let code = ffi::MatFactorSetSchurIS(raw, set);
                 ffi::ISDestroy(&mut set);
                 check(code)
@@ -172,8 +173,8 @@ struct OnFirst {
 impl OnFirst {
     /// The places of the entries of an inverse that are asked for: a square matrix of that pattern.
     fn wanted(comm: &SimpleCommunicator, order: i32, rows: &[i32], columns: &[i32]) -> Result<Self> {
-        let mut starts = vec![0; order as usize + 1];
-        columns.iter().for_each(|&column| starts[column as usize + 1] = rows.len() as i32);
+        let (mut starts, count) = (vec![0; order as usize + 1], narrow(rows.len())?);
+        columns.iter().for_each(|&column| starts[column as usize + 1] = count);
         for i in 1..starts.len() {
             starts[i] += starts[i - 1];
         }
@@ -183,7 +184,7 @@ impl OnFirst {
 
     /// Unit loads: row by row, a one in each of the given columns.
     fn units(comm: &SimpleCommunicator, order: i32, columns: &[i32]) -> Result<Self> {
-        let rows = columns.len() as i32;
+        let rows = narrow(columns.len())?;
         Self::new(comm, [rows, order], ((0..=rows).collect(), columns.to_vec()), 1.0)
     }
 
@@ -199,12 +200,14 @@ impl OnFirst {
             (starts, places) = (vec![0], Vec::new());
         }
         let values = vec![value; places.len()];
+        let (starts, places) = (number::indices(&starts), number::indices(&places));
+        let ([rows, columns], local) = (size.map(ffi::PetscInt::from), local.map(ffi::PetscInt::from));
         let mut made = Self { raw: null_mut(), transpose: null_mut() };
         // SAFETY: a live communicator and places for the handles; PETSc copies the rows of this rank, and of the two
         // layouts takes the one that the matrix has.
         unsafe {
             check(ffi::MatCreate(comm.as_raw(), &mut made.raw))?;
-            check(ffi::MatSetSizes(made.raw, local[0], local[1], size[0], size[1]))?;
+            check(ffi::MatSetSizes(made.raw, local[0], local[1], rows, columns))?;
             check(ffi::MatSetType(made.raw, c"aij".as_ptr()))?;
             let (i, j, v) = (starts.as_ptr(), places.as_ptr(), values.as_ptr());
             check(ffi::MatSeqAIJSetPreallocationCSR(made.raw, i, j, v))?;
@@ -217,7 +220,8 @@ impl OnFirst {
     /// Of [`Self::wanted`], on the first rank.
     fn values(&self, rows: &[i32], columns: &[i32]) -> Result<Vec<f64>> {
         let mut values = vec![0.0; rows.len() * columns.len()];
-        let (m, n) = (columns.len() as ffi::PetscInt, rows.len() as ffi::PetscInt);
+        let (m, n) = (count(columns.len())?, count(rows.len())?);
+        let (rows, columns) = (number::indices(rows), number::indices(columns));
         // SAFETY: m rows and n columns of this rank, and room for their values, row by row.
         check(unsafe { ffi::MatGetValues(self.raw, m, columns.as_ptr(), n, rows.as_ptr(), values.as_mut_ptr()) })?;
         Ok(values)
@@ -265,7 +269,7 @@ impl DenseLu {
     /// When the matrix is singular to working precision.
     pub fn new(order: usize, mut values: Vec<f64>) -> Result<Self> {
         debug_assert_eq!(values.len(), order * order);
-        let (mut raw, n) = (null_mut(), order as ffi::PetscInt);
+        let (mut raw, n) = (null_mut(), count(order)?);
         // SAFETY: `values` holds n^2 numbers and lives as long as the matrix (moving the Vec does not move them).
         unsafe {
             check(ffi::MatCreateSeqDense(mpi_sys::RSMPI_COMM_SELF, n, n, values.as_mut_ptr(), &mut raw))?;
@@ -278,7 +282,7 @@ impl DenseLu {
     /// x = matrix^-1 b.
     pub fn solve(&self, b: &[f64], x: &mut [f64]) -> Result<()> {
         debug_assert!(b.len() == self.order && x.len() == self.order);
-        let n = self.order as ffi::PetscInt;
+        let n = count(self.order)?;
         let (mut from, mut to) = (null_mut(), null_mut());
         // SAFETY: two vectors around slices of n numbers, destroyed before the borrows end; `b` is only read.
         unsafe {

@@ -9,6 +9,7 @@ use nalgebra::SMatrix;
 
 use super::error::check;
 use super::ffi;
+use super::number::{count, indices, truth};
 use super::vector::Vector;
 use crate::error::Result;
 
@@ -30,7 +31,7 @@ pub struct Matrix {
 impl Matrix {
     /// An empty matrix whose rows on this rank hold the blocks that `pattern` counts.
     pub fn new(comm: &impl AsCommunicator, pattern: &Pattern) -> Result<Self> {
-        let (local, block) = ((pattern.block * pattern.own.len()) as ffi::PetscInt, pattern.block as ffi::PetscInt);
+        let (local, block) = (count(pattern.block * pattern.own.len())?, count(pattern.block)?);
         let mut raw = null_mut();
         // SAFETY: a live communicator and a place for the handle; the counts have one entry per local block row.
         unsafe {
@@ -38,7 +39,8 @@ impl Matrix {
             let matrix = Self { raw };
             check(ffi::MatSetSizes(raw, local, local, -1, -1))?;
             check(ffi::MatSetType(raw, c"aij".as_ptr()))?;
-            let (own, other) = (pattern.own.as_ptr(), pattern.other.as_ptr());
+            let (own, other) = (indices(&pattern.own), indices(&pattern.other));
+            let (own, other) = (own.as_ptr(), other.as_ptr());
             check(ffi::MatXAIJSetPreallocation(raw, block, own, other, std::ptr::null(), std::ptr::null()))?;
             Ok(matrix)
         }
@@ -47,7 +49,7 @@ impl Matrix {
     /// A matrix known by what it does: the tangent of an [`Implicit`](super::Implicit) problem that multiplies by
     /// itself, with `local` rows on this rank.
     pub fn shell(comm: &impl AsCommunicator, local: usize) -> Result<Self> {
-        let (mut raw, local) = (null_mut(), local as ffi::PetscInt);
+        let (mut raw, local) = (null_mut(), count(local)?);
         // SAFETY: a live communicator and a place for the handle; the context is set before the first use.
         unsafe {
             let comm = comm.as_communicator().as_raw();
@@ -76,7 +78,7 @@ impl Matrix {
     /// Adds the dense `values` (row-major, over all components of n nodes) at the block rows and columns of `nodes` (global). Not collective;
     /// [`Self::assemble`] afterwards.
     pub fn add_blocks(&mut self, nodes: &[i32], values: &[f64]) -> Result<()> {
-        let count = nodes.len() as ffi::PetscInt;
+        let (count, nodes) = (count(nodes.len())?, indices(nodes));
         // SAFETY: `count` block rows and columns and their values.
         check(unsafe {
             ffi::MatSetValuesBlocked(
@@ -93,7 +95,7 @@ impl Matrix {
 
     /// Replaces one block. Not collective; [`Self::assemble`] afterwards.
     pub fn insert_block<const D: usize>(&mut self, row: i32, column: i32, block: &SMatrix<f64, D, D>) -> Result<()> {
-        let values = block.transpose();
+        let (values, row, column) = (block.transpose(), count(row)?, count(column)?);
         // SAFETY: one block row, one block column and their values, by rows.
         check(unsafe {
             ffi::MatSetValuesBlocked(
@@ -111,7 +113,8 @@ impl Matrix {
     /// One block of a row that this rank owns; zero where the pattern has none. Not collective.
     pub fn block<const D: usize>(&self, row: i32, column: i32) -> Result<SMatrix<f64, D, D>> {
         let [rows, columns] = [row, column].map(|node| std::array::from_fn::<_, D, _>(|i| D as i32 * node + i as i32));
-        let (mut values, count) = (SMatrix::<f64, D, D>::zeros(), D as ffi::PetscInt);
+        let (rows, columns) = (indices(&rows), indices(&columns));
+        let (mut values, count) = (SMatrix::<f64, D, D>::zeros(), count(D)?);
         // SAFETY: as many rows and columns, and a place for their values, by rows.
         unsafe {
             let place = values.as_mut_slice().as_mut_ptr();
@@ -131,7 +134,7 @@ impl Matrix {
 
     /// Clears the rows and columns of the unknowns `fixed` (global) and puts `diagonal` on their diagonal.
     pub fn fix(&mut self, fixed: &[i32], diagonal: f64) -> Result<()> {
-        let count = fixed.len() as ffi::PetscInt;
+        let (count, fixed) = (count(fixed.len())?, indices(fixed));
         // SAFETY: `count` indices; no right-hand side to adapt.
         check(unsafe { ffi::MatZeroRowsColumns(self.raw, count, fixed.as_ptr(), diagonal, null_mut(), null_mut()) })
     }
@@ -168,7 +171,7 @@ impl Matrix {
 
     /// Declares the matrix symmetric positive definite, so that symmetric factorisations take it.
     pub fn declare_positive_definite(&mut self) -> Result<()> {
-        let yes = ffi::PetscBool_PETSC_TRUE;
+        let yes = truth(true);
         // SAFETY: a live matrix.
         unsafe {
             check(ffi::MatSetOption(self.raw, ffi::MatOption_MAT_SYMMETRIC, yes))?;
@@ -183,7 +186,7 @@ impl Matrix {
         let mut space = null_mut();
         // SAFETY: a live vector of whole blocks; the matrix takes a reference and ours is dropped.
         unsafe {
-            check(ffi::VecSetBlockSize(coordinates.raw(), block as ffi::PetscInt))?;
+            check(ffi::VecSetBlockSize(coordinates.raw(), count(block)?))?;
             check(ffi::MatNullSpaceCreateRigidBody(coordinates.raw(), &mut space))?;
             let code = ffi::MatSetNearNullSpace(self.raw, space);
             ffi::MatNullSpaceDestroy(&mut space);

@@ -9,6 +9,7 @@ mod factor;
 mod ffi;
 pub mod fixed_text;
 mod matrix;
+mod number;
 pub mod object_address;
 mod partition;
 mod session;

@@ -7,6 +7,7 @@ use mpi::traits::{AsRaw, Communicator};
 
 use super::error::check;
 use super::ffi;
+use super::number::{count, indices, indices_back, narrow, truth};
 use crate::error::Result;
 
 /// Splits a graph into as many parts as there are ranks.
@@ -23,27 +24,27 @@ pub fn partition(comm: &impl AsCommunicator, total: usize, neighbours: &[Vec<i32
         let mut sorted = list.clone();
         sorted.sort_unstable();
         columns.extend(sorted);
-        offsets.push(columns.len() as i32);
+        offsets.push(narrow(columns.len())?);
     }
     let raw = comm.as_communicator().as_raw();
     let (mut graph, mut partitioning, mut parts) = (null_mut(), null_mut(), null_mut());
     // SAFETY: the graph owns the two arrays and frees them; every handle made here is destroyed here.
     unsafe {
-        let rows = neighbours.len() as i32;
         let result = (|| {
-            let (i, j) = (petsc_array(&offsets)?, petsc_array(&columns)?);
-            check(ffi::MatCreateMPIAdj(raw, rows, total as i32, i, j, null_mut(), &mut graph))?;
+            let (i, j) = (petsc_array(&indices(&offsets))?, petsc_array(&indices(&columns))?);
+            let (rows, total) = (count(neighbours.len())?, count(total)?);
+            check(ffi::MatCreateMPIAdj(raw, rows, total, i, j, null_mut(), &mut graph))?;
             check(ffi::MatPartitioningCreate(raw, &mut partitioning))?;
             check(ffi::MatPartitioningSetAdjacency(partitioning, graph))?;
             check(ffi::MatPartitioningSetFromOptions(partitioning))?;
             check(ffi::MatPartitioningApply(partitioning, &mut parts))?;
-            let (mut count, mut values) = (0, std::ptr::null());
-            check(ffi::ISGetLocalSize(parts, &mut count))?;
+            let (mut size, mut values) = (0, std::ptr::null());
+            check(ffi::ISGetLocalSize(parts, &mut size))?;
             check(ffi::ISGetIndices(parts, &mut values))?;
-            let list =
-                if count == 0 { Vec::new() } else { std::slice::from_raw_parts(values, count as usize).to_vec() };
+            let lent = if size == 0 { &[] } else { std::slice::from_raw_parts(values, size as usize) };
+            let list = indices_back(lent);
             check(ffi::ISRestoreIndices(parts, &mut values))?;
-            Ok(list)
+            list
         })();
         ffi::ISDestroy(&mut parts);
         ffi::MatPartitioningDestroy(&mut partitioning);
@@ -53,15 +54,15 @@ pub fn partition(comm: &impl AsCommunicator, total: usize, neighbours: &[Vec<i32
 }
 
 /// A copy of `values` in memory that PETSc may free.
-fn petsc_array(values: &[i32]) -> Result<*mut i32> {
-    let mut pointer: *mut i32 = null_mut();
-    let bytes = std::mem::size_of_val(values).max(4);
+fn petsc_array(values: &[ffi::PetscInt]) -> Result<*mut ffi::PetscInt> {
+    let mut pointer: *mut ffi::PetscInt = null_mut();
+    let bytes = std::mem::size_of_val(values).max(size_of::<ffi::PetscInt>());
     let (name, file) = (c"petsc_array", c"partition.rs");
     // SAFETY: PETSc gives `bytes` bytes, which hold all values.
     unsafe {
         check(ffi::PetscMallocA(
             1,
-            ffi::PetscBool_PETSC_FALSE,
+            truth(false),
             0,
             name.as_ptr(),
             file.as_ptr(),

@@ -12,6 +12,7 @@ use mpi::traits::AsRaw;
 use super::error::{USER_ERROR, check};
 use super::ffi;
 use super::matrix::Matrix;
+use super::number::{count, truth};
 use super::vector::Vector;
 use crate::error::{Error, Result};
 use callbacks::{check_stage, convergence, guess, limit, multiply, post_step, residual, search, solve, tangent};
@@ -83,7 +84,7 @@ const SHELL: &CStr = c"shell";
 pub const CUT: f64 = 0.25;
 
 /// Iterations of a Krylov method before the step is given up.
-const MOST_KRYLOV: i32 = 200;
+const MOST_KRYLOV: ffi::PetscInt = 200;
 
 /// F(t, u, du/dt) = 0, as TS's implicit form wants it.
 ///
@@ -175,7 +176,7 @@ struct Context<'a, P> {
     step: Step,
     newton: usize,
     /// Steps cut since TS began.
-    cuts: i32,
+    cuts: ffi::PetscInt,
     error: Option<Error>,
 }
 
@@ -197,20 +198,20 @@ impl Integrator {
             check(ffi::TSSetType(ts, c"beuler".as_ptr()))?;
             check(ffi::TSSetExactFinalTime(ts, ffi::TSExactFinalTimeOption_TS_EXACTFINALTIME_STEPOVER))?;
             check(ffi::TSSetMaxTime(ts, f64::MAX))?;
-            check(ffi::TSSetMaxSteps(ts, i32::MAX - 1))?;
+            check(ffi::TSSetMaxSteps(ts, ffi::PetscInt::MAX - 1))?;
             check(ffi::TSSetMaxSNESFailures(ts, -1))?;
             // A step that fails for good is a converged reason to be read, not an error of PETSc.
-            check(ffi::TSSetErrorIfStepFails(ts, ffi::PetscBool_PETSC_FALSE))?;
+            check(ffi::TSSetErrorIfStepFails(ts, truth(false)))?;
             let mut adapt = null_mut();
             check(ffi::TSGetAdapt(ts, &mut adapt))?;
             check(ffi::TSAdaptSetType(adapt, c"none".as_ptr()))?;
             check(ffi::TSGetSNES(ts, &mut snes))?;
-            check(ffi::SNESSetTolerances(snes, 0.0, 0.0, 0.0, settings.max_newton as i32, -1))?;
+            check(ffi::SNESSetTolerances(snes, 0.0, 0.0, 0.0, count(settings.max_newton)?, -1))?;
             check(ffi::SNESGetLineSearch(snes, &mut search))?;
             // Where friction turns between stick and slip the norm must rise before it falls, and backtracking stalls.
             let line_search = match settings.search {
                 Search::Whole => c"basic",
-                Search::Least => c"l2",
+                Search::Least => CStr::from_bytes_with_nul(ffi::MPJR_SEARCH_LEAST).unwrap_or(c"l2"),
                 Search::Own => SHELL,
             };
             check(ffi::SNESLineSearchSetType(search, line_search.as_ptr()))?;
@@ -225,7 +226,7 @@ impl Integrator {
             check(ffi::KSPSetType(ksp, method.as_ptr()))?;
             check(ffi::KSPSetTolerances(ksp, reduction, -2.0, -2.0, MOST_KRYLOV))?;
             if let Linear::OwnIterative(most) = settings.linear {
-                check(ffi::SNESKSPSetUseEW(snes, ffi::PetscBool_PETSC_TRUE))?;
+                check(ffi::SNESKSPSetUseEW(snes, truth(true)))?;
                 check(ffi::SNESKSPSetParametersEW(snes, 2, most, most, -2.0, -2.0, -2.0, -2.0))?;
             }
             check(ffi::PCSetType(pc, SHELL.as_ptr()))?;
@@ -264,7 +265,7 @@ impl Integrator {
         // SAFETY: a place for the handle, which stays TS's own; -2 leaves a tolerance as it is.
         unsafe {
             check(ffi::TSGetSNES(self.ts, &mut snes))?;
-            check(ffi::SNESSetTolerances(snes, -2.0, -2.0, -2.0, most as i32, -2))
+            check(ffi::SNESSetTolerances(snes, -2.0, -2.0, -2.0, count(most)?, -2))
         }
     }
 
@@ -318,7 +319,7 @@ impl Integrator {
             }
             check(ffi::TSSetTime(ts, now))?;
             check(ffi::TSSetTimeStep(ts, dt))?;
-            check(ffi::TSSetMaxStepRejections(ts, max_cuts as i32))?;
+            check(ffi::TSSetMaxStepRejections(ts, count(max_cuts)?))?;
             let code = ffi::TSSolve(ts, u.raw());
             ffi::TSGetConvergedReason(ts, &mut reason);
             code

@@ -9,6 +9,7 @@ use mpi::traits::AsRaw;
 
 use super::error::check;
 use super::ffi;
+use super::number::{self, count};
 use crate::error::Result;
 
 /// A distributed vector of f64; each rank holds a contiguous block of entries.
@@ -22,7 +23,7 @@ impl Vector {
         let mut raw = null_mut();
         // SAFETY: a live communicator and a place for the handle.
         unsafe {
-            check(ffi::VecCreateMPI(comm.as_communicator().as_raw(), local as ffi::PetscInt, -1, &mut raw))?;
+            check(ffi::VecCreateMPI(comm.as_communicator().as_raw(), count(local)?, -1, &mut raw))?;
         }
         let mut vector = Self { raw };
         vector.set(0.0)?;
@@ -194,7 +195,7 @@ pub struct Gather {
 impl Gather {
     /// For vectors laid out like `source`: this rank wants the entries `indices` (global), in this order.
     pub fn new(source: &Vector, indices: &[i32]) -> Result<Self> {
-        let count = indices.len() as ffi::PetscInt;
+        let (count, indices) = (count(indices.len())?, number::indices(indices));
         let (mut target, mut set, mut raw) = (null_mut(), null_mut(), null_mut());
         // SAFETY: places for the handles; the index set copies the indices and is destroyed here.
         unsafe {

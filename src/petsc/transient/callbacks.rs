@@ -132,7 +132,7 @@ pub(super) unsafe extern "C" fn limit<P: Implicit>(
         guarded::<P>(pointer, |context| {
             let step = context.step;
             let bent = context.problem.limit(step, &Vector::borrow(u), &mut Vector::borrow(decrement))?;
-            *changed = if bent { ffi::PetscBool_PETSC_TRUE } else { ffi::PetscBool_PETSC_FALSE };
+            *changed = truth(bent);
             Ok(())
         })
     }
@@ -197,10 +197,10 @@ pub(super) unsafe extern "C" fn check_stage<P: Implicit>(
         guarded::<P>(pointer, |context| {
             let judgement = context.problem.judge(context.step, &Vector::borrow(u))?;
             *accept = match judgement {
-                Judgement::Accept => ffi::PetscBool_PETSC_TRUE,
+                Judgement::Accept => truth(true),
                 Judgement::Retry(fraction) => {
                     check(ffi::TSAdaptSetScaleSolveFailed(adapt, fraction))?;
-                    ffi::PetscBool_PETSC_FALSE
+                    truth(false)
                 }
             };
             Ok(())
@@ -232,7 +232,7 @@ pub(super) unsafe extern "C" fn post_step<P: Implicit>(ts: ffi::TS) -> ffi::Pets
                 Next::Step(Attempt { now, dt, max_cuts }) => {
                     check(ffi::TSSetTime(ts, now))?;
                     check(ffi::TSSetTimeStep(ts, dt))?;
-                    check(ffi::TSSetMaxStepRejections(ts, max_cuts as i32))
+                    check(ffi::TSSetMaxStepRejections(ts, count(max_cuts)?))
                 }
                 Next::Stop => check(ffi::TSSetConvergedReason(ts, ffi::TSConvergedReason_TS_CONVERGED_USER)),
             }
