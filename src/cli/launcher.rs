@@ -1,5 +1,7 @@
 //! Which of how many processes this one is, as far as whoever started it says so.
 
+use std::path::PathBuf;
+
 use crate::error::{Error, Result};
 
 /// Where Open MPI, MPICH and its kin, and Slurm say which rank a process is.
@@ -15,23 +17,22 @@ pub fn is_first_process() -> bool {
     rank().is_none_or(|rank| rank == "0")
 }
 
-/// Whether a launcher started this process whose own standard output is a terminal. It may be some generations away, as
-/// the proxies of MPICH's mpiexec and Slurm's step daemon stand between.
-pub fn is_on_a_terminal() -> bool {
+/// The terminal that the standard output of this process's launcher is, if there is a launcher and it has one. It may be some
+/// generations away, as the proxies of MPICH's mpiexec and Slurm's step daemon stand between.
+pub fn terminal_of_launcher() -> Option<PathBuf> {
     const GENERATIONS: usize = 4;
-    if rank().is_none() {
-        return false;
-    }
+    rank()?;
     let parent = |process: u32| -> Option<u32> {
         let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
         // After the name, which may hold anything: the state, then the parent.
         stat.rsplit(')').next()?.split_whitespace().nth(1)?.parse().ok()
     };
     let ancestors = std::iter::successors(Some(std::os::unix::process::parent_id()), |&process| parent(process));
-    ancestors.take(GENERATIONS).filter(|&process| process > 1).any(|process| {
-        let output = std::fs::read_link(format!("/proc/{process}/fd/1")).unwrap_or_default();
-        output.starts_with("/dev/pts") || output.starts_with("/dev/tty")
-    })
+    let mut outputs = ancestors
+        .take(GENERATIONS)
+        .filter(|&process| process > 1)
+        .filter_map(|process| std::fs::read_link(format!("/proc/{process}/fd/1")).ok());
+    outputs.find(|output| output.starts_with("/dev/pts") || output.starts_with("/dev/tty"))
 }
 
 /// How many processes a launcher says that it started.

@@ -2,12 +2,14 @@
 
 use std::cell::RefCell;
 use std::io::IsTerminal;
+use std::path::Path;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use rustix::termios::{tcgetwinsize, tcsetwinsize};
 
-use super::launcher::is_on_a_terminal;
+use super::launcher::terminal_of_launcher;
 use super::sweep::claim::Claim;
 use super::terminal::{is_quiet, tell};
 
@@ -64,7 +66,7 @@ impl Progress {
             return Self::Lines { total, last: Instant::now() };
         };
         let bar = ProgressBar::with_draw_target(Some(total as u64), target);
-        // Within any width, as a line that wraps leaves pieces behind; under mpirun, where it is not known, 80 columns.
+        // Within any width, as a line that wraps leaves pieces behind.
         // A template that is wrong is a defect that the default one survives.
         if let Ok(style) = ProgressStyle::with_template("{bar:12} {pos}/{len}  {eta:>3} left  {wide_msg}") {
             bar.set_style(style);
@@ -110,7 +112,7 @@ impl Progress {
 
 /// Where a bar can be drawn, unless nothing is to be told: standard error when it is a terminal; under a launcher that
 /// gives its processes a pseudo-terminal as standard output, as Open MPI's mpirun does in any case, that output when the
-/// launcher's own is a terminal. Elsewhere, as under Slurm's srun, which passes on whole lines, there is none.
+/// launcher's own is a terminal. Elsewhere, as under MPICH's mpiexec and Slurm's srun, which pass on whole lines, there is none.
 pub fn terminal() -> Option<ProgressDrawTarget> {
     if is_quiet() {
         return None;
@@ -118,5 +120,17 @@ pub fn terminal() -> Option<ProgressDrawTarget> {
     if std::io::stderr().is_terminal() {
         return Some(ProgressDrawTarget::stderr());
     }
-    (is_on_a_terminal() && std::io::stdout().is_terminal()).then(ProgressDrawTarget::stdout)
+    let launchers = std::io::stdout().is_terminal().then(terminal_of_launcher).flatten()?;
+    adopt_size(&launchers);
+    Some(ProgressDrawTarget::stdout())
+}
+
+/// Gives the pseudo-terminal that a launcher made, which has no size, that of its own terminal: a line that is too long for this one
+/// would wrap. Where it cannot be told the bar takes 80 columns.
+fn adopt_size(launchers: &Path) {
+    let size = std::fs::File::open(launchers).ok().and_then(|terminal| tcgetwinsize(terminal).ok());
+    if let Some(size) = size.filter(|size| size.ws_col > 0) {
+        // As above.
+        let _ = tcsetwinsize(std::io::stdout(), size);
+    }
 }
