@@ -65,7 +65,7 @@ fn object(keys: &'static Keys, names: &[&'static str], fixed: Option<(&str, &str
     let known = || names.iter().filter_map(|name| keys.get(name));
     let property = |key: &'static Key| {
         let value = match fixed {
-            Some((by, word)) if by == key.name => json!({ "const": word }),
+            Some((by, word)) if by == key.name => json!({ "const": word, "description": description(key) }),
             _ => property(key),
         };
         (key.name.to_owned(), value)
@@ -84,25 +84,24 @@ fn object(keys: &'static Keys, names: &[&'static str], fixed: Option<(&str, &str
 fn property(key: &Key) -> Value {
     let mut value = kind(&key.kind);
     if let Some(value) = value.as_object_mut() {
-        let what = match key.kind {
-            Kind::Choice(_)
-            | Kind::ChoiceOrPair(_)
-            | Kind::LengthUnit
-            | Kind::Flag
-            | Kind::Table(_)
-            | Kind::OneOrTables(_) => "",
-            _ => key.kind.what(),
-        };
-        let about: Vec<&str> = [what, key.about].into_iter().filter(|text| !text.is_empty()).collect();
-        if !about.is_empty() {
-            value.insert("description".into(), json!(about.join("; ")));
-        }
+        // A table says itself what it is.
+        value.entry("description").or_insert_with(|| json!(description(key)));
         let default = key.default.and_then(|default| default.parse::<toml::Value>().ok());
         if let Some(default) = default.and_then(|default| serde_json::to_value(default).ok()) {
             value.insert("default".into(), default);
         }
     }
     value
+}
+
+/// What a key takes, in words, and what more there is to say of it.
+fn description(key: &Key) -> String {
+    let what = match key.kind {
+        Kind::Table(keys) | Kind::OneOrTables(keys) => keys.about.to_owned(),
+        _ => key.kind.words().map_or_else(|| key.kind.what().into(), |words| format!("one of {}", words.join(", "))),
+    };
+    let about: Vec<&str> = [&what, key.about].into_iter().filter(|text| !text.is_empty()).collect();
+    about.join("; ")
 }
 
 fn kind(kind: &Kind) -> Value {
@@ -222,6 +221,22 @@ mod tests {
             in_tables(keys, "", &mut other);
             assert_eq!(one, other, "{of:?}");
         }
+    }
+
+    /// Every key has words of its own, which editors show beside it.
+    #[test]
+    fn every_key_is_described() {
+        fn check(schema: &Value, path: &str) {
+            for (key, value) in schema["properties"].as_object().into_iter().flatten() {
+                assert!(value["description"].as_str().is_some_and(|text| !text.is_empty()), "{path}.{key}: {value}");
+                check(value, &format!("{path}.{key}"));
+            }
+            for part in ["oneOf", "then", "else", "items"] {
+                let parts = schema[part].as_array().cloned().unwrap_or_else(|| vec![schema[part].clone()]);
+                parts.iter().filter(|part| part.is_object()).for_each(|part| check(part, path));
+            }
+        }
+        check(&schema(File::Any), "");
     }
 
     /// Every default is TOML, and of the kind that its key takes: a scene that writes it out is read.
