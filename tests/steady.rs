@@ -170,7 +170,7 @@ fn long_transients_end_in_the_steady_state() {
     cases.push((vec!["friction.coefficient=0.1 + 0.3*exp(-p)".into()], 0.1));
     for (rule, velocity) in RULES.into_iter().cycle().zip([3e-3, 1e-2, 3e-2, 0.1, 0.3]) {
         let rule = format!("material.poisson_rule=\"{}\"", named(rule));
-        let load = ["phase.press.approach=".into(), "phase.press.normal_force=0.5".into()];
+        let load = ["phase.press.approach=", "phase.press.normal_force=0.5"].map(String::from);
         cases.push(([&[arms.clone(), rule][..], &load].concat(), velocity));
     }
     let per_spacing = 8;

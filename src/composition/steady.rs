@@ -40,7 +40,7 @@ pub fn last_velocity(scene: &Scene, file: &Path) -> Result<f64> {
 /// # Errors
 /// [`Error::Usage`] for a direction in the plane, or one that is no number.
 pub fn heading(scene: &Scene, direction: Option<f64>) -> Result<Vector2<f64>> {
-    match (direction, last(scene)?.motion) {
+    match (direction, &last(scene)?.motion) {
         (Some(_), _) if !scene.is_in_space() => {
             Err(Error::Usage("--direction: is for scenes in space; in the plane the indenter slides along x".into()))
         }

@@ -76,14 +76,14 @@ fn stick_slip() -> Case {
         let period = (rows[last].time - rows[first].time) / (peaks.len().max(2) - 1) as f64;
         let least = (first..rows.len()).map(force).fold(f64::INFINITY, f64::min);
         let stiffness = 1.0 / (1.0 / SPRING + 1.0 / SHEAR);
-        let [low, slip] = slipped(stiffness);
+        let [low, slip, slowest] = slipped(stiffness);
         let exact = (FORCE * STATIC - low) / (stiffness * PULLED) + slip;
-        // In a step the spring is drawn by so much, and friction catches what slips within two.
+        // In a step the spring is drawn by so much, and gives by so much where slip ends.
         let step = stiffness * PULLED * dt;
-        let caught = 2.0 * stiffness * FALL * dt;
+        let caught = stiffness * (slowest - PULLED) * dt;
         Ok(vec![
             Row::new("F at the last peak, N/m", [force(last), FORCE * STATIC], step, "one step of 0.01 s"),
-            Row::new("least F after the first, N/m", [least, low], caught, "two steps of slip, 0.01 s each"),
+            Row::new("least F after the first, N/m", [least, low], caught, "one step of the slowest slip"),
             Row::new("period, s", [period, exact], 5.0 * dt, "five steps of 0.01 s"),
         ])
     };
@@ -95,8 +95,9 @@ fn stick_slip() -> Case {
     }
 }
 
-/// The least force of the slip, N/m, and how long it takes from its beginning on the rising branch at the same force, s.
-fn slipped(stiffness: f64) -> [f64; 2] {
+/// The least force of the slip, N/m, how long it takes from its beginning on the rising branch at the force of stick, s, and the rate of slip at
+/// its end, m/s.
+fn slipped(stiffness: f64) -> [f64; 3] {
     const PIECES: u32 = 20_000;
     let f = |w: f64| DYNAMIC + (STATIC - DYNAMIC) * (-w / FALL).exp() + RISE * w;
     let slope = |w: f64| RISE - (STATIC - DYNAMIC) / FALL * (-w / FALL).exp();
@@ -110,5 +111,5 @@ fn slipped(stiffness: f64) -> [f64; 2] {
     let width = (from - end) / f64::from(PIECES);
     let time = (0..PIECES).map(|i| end + (f64::from(i) + 0.5) * width);
     let time: f64 = time.map(|w| FORCE * slope(w) / (stiffness * (w - PULLED)) * width).sum();
-    [FORCE * f(end), time]
+    [FORCE * f(end), time, end]
 }

@@ -55,18 +55,18 @@ pub fn approach_under<const D: usize>(behind: &Behind<'_, D>, force: f64) -> Res
             break;
         }
         let share = size / before;
-        for i in 0..p.len() {
-            along[i] = if touches[i] { gap[i] + share * along[i] } else { 0.0 };
+        for ((along, gap), touches) in along.iter_mut().zip(&gap).zip(&touches) {
+            *along = if *touches { gap + share * *along } else { 0.0 };
         }
         let mut answer = indentation(&along)?;
         levelled(&mut answer, &p);
         let length = dot(&gap, &along) / dot(&answer, &along);
         before = size;
-        for i in 0..p.len() {
-            if touches[i] {
-                p[i] = (p[i] - length * along[i]).max(0.0);
-            } else if gap[i] < 0.0 {
-                (p[i], before) = (-length * gap[i], f64::INFINITY);
+        for (((p, along), gap), touches) in p.iter_mut().zip(&along).zip(&gap).zip(&touches) {
+            if *touches {
+                *p = (*p - length * along).max(0.0);
+            } else if *gap < 0.0 {
+                (*p, before) = (-length * gap, f64::INFINITY);
             }
         }
         at_force(&mut p);
