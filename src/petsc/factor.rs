@@ -11,7 +11,7 @@ use super::ffi;
 use super::matrix::Matrix;
 use super::number::{self, count, narrow};
 use super::vector::Vector;
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// The Cholesky factorisation of a symmetric positive definite matrix, by MUMPS.
 ///
@@ -26,9 +26,7 @@ pub struct Cholesky {
 impl Cholesky {
     /// Factorises `matrix`, which must have been declared positive definite.
     pub fn new(matrix: &Matrix) -> Result<Self> {
-        let mut factor = Self::symbolic(matrix, |_| Ok(()))?;
-        factor.numeric(matrix)?;
-        Ok(factor)
+        Self::factorised(matrix, |_| Ok(()))
     }
 
     /// x = matrix^-1 b.
@@ -110,7 +108,7 @@ impl Cholesky {
     /// complement onto those unknowns. On one rank only.
     pub fn with_inverse_schur(matrix: &Matrix, kept: &[i32]) -> Result<(Self, Vec<f64>)> {
         let (count, indices) = (count(kept.len())?, number::indices(kept));
-        let mut factor = Self::symbolic(matrix, |raw| {
+        let factor = Self::factorised(matrix, |raw| {
             let mut set = null_mut();
             // SAFETY: the index set copies `kept`; the factor takes a reference to it.
             unsafe {
@@ -121,7 +119,6 @@ impl Cholesky {
                 check(code)
             }
         })?;
-        factor.numeric(matrix)?;
         let (mut schur, mut values) = (null_mut(), null());
         // SAFETY: the complement is a dense sequential matrix of count^2 numbers, lent until it is given back.
         unsafe {
@@ -137,7 +134,7 @@ impl Cholesky {
         }
     }
 
-    fn symbolic(matrix: &Matrix, prepare: impl FnOnce(ffi::Mat) -> Result<()>) -> Result<Self> {
+    fn symbolic(matrix: &Matrix, prepare: impl Fn(ffi::Mat) -> Result<()>) -> Result<Self> {
         let mut raw = null_mut();
         // SAFETY: a live matrix, a place for the handle, and PETSc's default settings; MUMPS orders by itself.
         unsafe {
@@ -147,6 +144,38 @@ impl Cholesky {
             prepare(raw)?;
             check(ffi::MatCholeskyFactorSymbolic(raw, matrix.raw(), null_mut(), &default_settings()?))?;
             Ok(factor)
+        }
+    }
+
+    /// Both factorisations, with what is to be said before them. MUMPS foresees its workspace and adds a share for what pivots and, on
+    /// several ranks, its distribution of work as it goes ask for beyond that, which is not the same twice: where that was not
+    /// enough it is asked again with more. PETSc makes no error of it; the first solve would fail.
+    fn factorised(matrix: &Matrix, prepare: impl Fn(ffi::Mat) -> Result<()>) -> Result<Self> {
+        /// Control of MUMPS: the share, in percent, and beyond which it is not the distribution that takes it.
+        const SHARE: ffi::PetscInt = 14;
+        const MOST: ffi::PetscInt = 1000;
+        let mut enlarged = None;
+        loop {
+            let mut factor = Self::symbolic(matrix, &prepare)?;
+            let (mut share, mut wrong) = (0, 0);
+            // SAFETY: a factor of MUMPS that has been analysed, and places for the numbers.
+            unsafe {
+                if let Some(share) = enlarged {
+                    check(ffi::MatMumpsSetIcntl(factor.raw, SHARE, share))?;
+                }
+                check(ffi::MatMumpsGetIcntl(factor.raw, SHARE, &mut share))?;
+                factor.numeric(matrix)?;
+                check(ffi::MatMumpsGetInfog(factor.raw, 1, &mut wrong))?;
+            }
+            match wrong {
+                0.. => return Ok(factor),
+                wrong if LACKS_WORKSPACE.contains(&wrong) && share < MOST => enlarged = Some(2 * share.max(10)),
+                wrong => {
+                    return Err(Error::Solver(format!(
+                        "MUMPS could not factorise the body: INFOG(1) = {wrong}; there may be too little memory for it"
+                    )));
+                }
+            }
         }
     }
 
@@ -163,6 +192,9 @@ impl Cholesky {
         }
     }
 }
+
+/// What MUMPS says of a workspace that is too small: of integers, and of reals.
+const LACKS_WORKSPACE: [ffi::PetscInt; 2] = [-8, -9];
 
 /// A sparse matrix that the first rank holds whole, and its transpose, as MUMPS wants what it is asked for.
 struct OnFirst {
