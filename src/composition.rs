@@ -4,6 +4,7 @@ mod body;
 mod estimate;
 mod inputs;
 mod map;
+mod outline;
 mod pressed;
 mod profile;
 mod steady;
@@ -38,9 +39,10 @@ use crate::solve::{
 };
 
 use body::Materials;
-pub use body::{Meshed, Outline, Stretch, outline};
+pub use body::Meshed;
 pub use estimate::Estimate;
 pub use inputs::inputs;
+pub use outline::{Outline, Stretch, outline};
 pub use pressed::PressedEnd;
 pub use profile::{Elevations, Finest, Shape, elevations, measured, reach, seam_doubt, shape};
 pub use steady::{heading, last_velocity, steady};

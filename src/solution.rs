@@ -128,8 +128,8 @@ pub fn frame(report: &mut Report<'_>) -> Result<InterfaceFrame> {
 }
 
 /// The components of displacement and stress that the results have, node by node.
-pub fn components(fields: &BulkFields, in_space: bool) -> (Vec<f64>, Vec<f64>) {
-    if in_space {
+pub fn components(fields: &BulkFields) -> (Vec<f64>, Vec<f64>) {
+    if fields.in_space {
         return (fields.displacement.as_flattened().to_vec(), fields.stress.as_flattened().to_vec());
     }
     let displacement = fields.displacement.iter().flat_map(|[x, _, z]| [*x, *z]);

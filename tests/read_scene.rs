@@ -363,7 +363,7 @@ impl Random {
             contact: "contact".to_owned(),
             fixed: vec!["base".to_owned(), "left \"1\"".to_owned()],
             roller: self.of(&[vec![], vec!["side".to_owned()]]),
-            element: self.of(&[Element::Quad4, Element::Quad4Bbar]),
+            element: self.of(&[None, Some(Element::Quad4), Some(Element::Quad4Bbar), Some(Element::Hex8Bbar)]),
         })
     }
 

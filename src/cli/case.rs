@@ -57,6 +57,8 @@ pub struct Done {
     pub last: HistoryRow,
     /// All warnings, on rank 0.
     pub warnings: Vec<Warning>,
+    /// Whether its vectors have two components along the face.
+    pub in_space: bool,
 }
 
 /// Solves the scene and records it; `progress` is shown where it is not silent. Collective.
@@ -128,7 +130,7 @@ pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<
         // It has done its work; one that stays does no harm.
         let _ = checkpoint::remove(job.out);
     }
-    Ok(Done { result, outcome, last, warnings })
+    Ok(Done { result, outcome, last, warnings, in_space: mesh.is_in_space() })
 }
 
 /// The recorder of the run, on the rank that writes.

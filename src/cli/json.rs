@@ -14,7 +14,7 @@ use crate::warnings::Warning;
 
 /// What a run did, with its results at `out`: the last row of the history under its names there.
 pub fn outcome(scene: &Scene, done: &Done, out: &Path) -> Value {
-    let Done { outcome: Outcome { status, ranks, setup, total, counts }, last, warnings, result } = done;
+    let Done { outcome: Outcome { status, ranks, setup, total, counts }, last, warnings, result, in_space } = done;
     json!({
         "title": scene.title,
         "status": status.as_str(),
@@ -22,7 +22,7 @@ pub fn outcome(scene: &Scene, done: &Done, out: &Path) -> Value {
         "results": out.display().to_string(),
         "warnings": warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "last": last.values(extra(scene))
-            .map(|(name, numbers)| (name.to_owned(), number(scene, name, numbers)))
+            .map(|(name, numbers)| (name.to_owned(), number(*in_space, name, numbers)))
             .collect::<serde_json::Map<_, Value>>(),
         "steps": counts.steps,
         "pieces": counts.pieces,
@@ -36,8 +36,8 @@ pub fn outcome(scene: &Scene, done: &Done, out: &Path) -> Value {
 }
 
 /// A number, or in space the components of a vector.
-fn number(scene: &Scene, name: &str, [x, y]: [f64; 2]) -> Value {
-    if scene.is_in_space() && is_vector(name) { json!([x, y]) } else { x.into() }
+fn number(in_space: bool, name: &str, [x, y]: [f64; 2]) -> Value {
+    if in_space && is_vector(name) { json!([x, y]) } else { x.into() }
 }
 
 /// What a run would do.

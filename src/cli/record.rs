@@ -160,7 +160,7 @@ impl Observer for Recording<'_> {
         agree(self.world, mine)?;
         if report.bulk_output {
             let fields = agree(self.world, solution::bulk(&mut report))?;
-            let (displacement, stress) = solution::components(&fields, self.scene.is_in_space());
+            let (displacement, stress) = solution::components(&fields);
             let frame = Frame { time: report.time, nodes: &fields.nodes, displacement: &displacement, stress: &stress };
             output::bulk::write(self.world, self.recorder.as_ref(), &frame)?;
         }

@@ -139,13 +139,15 @@ fn extent(scene: &Scene, outline: &Outline) -> String {
         kinds.dedup();
         return format!("{cells} cells, {} sides", kinds.join(" and "));
     }
-    let [quadrilaterals, triangles] = outline.cells;
-    let Stretch { from, to, edges, .. } = outline.face;
-    format!(
-        "{quadrilaterals} quadrilaterals, {triangles} triangles; contact face of\n{:15}{edges} edges from x = \
-         {from:.6} to {to:.6} m",
-        ""
-    )
+    let ([multilinear, simplices], facets) = (outline.cells, outline.facets);
+    let range = |along: &Stretch| format!("{:.6} to {:.6} m", along.from, along.to);
+    let (cells, face) = match &outline.across {
+        None => (["quadrilaterals", "triangles"], format!("edges from x = {}", range(&outline.face))),
+        Some(across) => {
+            (["hexahedra", "tetrahedra"], format!("facets from x = {}, y = {}", range(&outline.face), range(across)))
+        }
+    };
+    format!("{multilinear} {}, {simplices} {}; contact face of\n{:15}{facets} {face}", cells[0], cells[1], "")
 }
 
 /// What a run did.

@@ -10,8 +10,8 @@ use crate::element::Kind;
 use crate::element::solid::Dilatation;
 use crate::error::{Error, Result};
 use crate::input;
-use crate::mesh::gmsh::{self, Flaw, Role, Roles, called};
-use crate::mesh::{Face, Grid, Layer, Mesh, Sides, Source, Span};
+use crate::mesh::gmsh::{self, Built, Flaw, Role, Roles, called};
+use crate::mesh::{Cell, Face, Grid, Layer, Mesh, Sides, Source, Span};
 use crate::output::{BulkPlan, FacePlan};
 use crate::parallel::agree;
 use crate::petsc::Vector;
@@ -29,7 +29,7 @@ pub fn mesh(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Mes
             let mine = if comm.rank() == 0 { bytes(mesh) } else { Ok(Vec::new()) };
             let mut bytes = agree(comm, mine)?;
             crate::parallel::broadcast(comm, 0, &mut bytes);
-            file_mesh(&bytes, mesh, scene, file).map(Meshed::in_plane)
+            file_mesh(&bytes, mesh, scene, file)
         }
     }
 }
@@ -48,8 +48,9 @@ impl Meshed {
         if layer.spans.len() == 1 { Self::Plane(Source::Layer(layer)) } else { Self::Space(Source::Layer(layer)) }
     }
 
-    fn in_plane(mesh: Mesh<2>) -> Self {
-        Self::Plane(Source::Mesh(mesh))
+    /// Whether it is in space.
+    pub fn is_in_space(&self) -> bool {
+        matches!(self, Self::Space(_))
     }
 
     /// The nodes of its contact face, for output.
@@ -78,128 +79,17 @@ fn face_plan<const D: usize>(face: &Face<D>) -> FacePlan {
 }
 
 fn bulk_plan<const D: usize>(mesh: &Mesh<D>, frames: usize) -> BulkPlan {
+    // Tetrahedra as such; triangles are quadrilaterals with a corner twice.
+    let simplices = D == 3 && mesh.cells.iter().all(|cell| cell.kind == Kind::Simplex);
+    let corners = if simplices { D + 1 } else { 1 << D };
+    let of = |cell: &Cell<D>| if simplices { cell.corners().to_vec() } else { cell.as_multilinear() };
+    let cells = mesh.cells.iter().flat_map(of).map(i64::from);
     BulkPlan {
         frames,
         axes: D,
         coordinates: mesh.nodes.iter().flatten().copied().collect(),
-        corners: 1 << D,
-        cells: mesh.cells.iter().flat_map(|cell| cell.as_multilinear()).map(i64::from).collect(),
-    }
-}
-
-/// What a scene's body is, as far as it is known without a solver. A layer's mesh is not made for it.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Outline {
-    /// Its contact face, along x.
-    pub face: Stretch,
-    /// In space, along y.
-    pub across: Option<Stretch>,
-    /// The displacements to be solved for.
-    pub unknowns: usize,
-    /// Quadrilaterals (in space hexahedra) and triangles.
-    pub cells: [usize; 2],
-    /// Of the contact, Pa/m, where the mesh decides it.
-    pub penalty: Option<f64>,
-    /// From the lowest point to the highest of the contact face, m.
-    pub height: f64,
-    /// Of the nodes of a mesh's face, x and the depth below the highest one, m; none for a layer, whose face is flat and
-    /// evenly divided.
-    pub nodes: Vec<[f64; 2]>,
-}
-
-/// The contact face in one direction.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Stretch {
-    /// m
-    pub from: f64,
-    /// m
-    pub to: f64,
-    /// How many edges it has.
-    pub edges: usize,
-    /// Whether its ends are the same node.
-    pub periodic: bool,
-    /// How far each end is below the highest node, m, where it is clamped; none where it can move.
-    pub clamped: [Option<f64>; 2],
-}
-
-/// What the body of the scene at `file` is; a .msh file is read by this process.
-pub fn outline(scene: &Scene, file: &Path) -> Result<Outline> {
-    match &scene.body {
-        scene::Body::Layer(layer) => Ok(Outline::of_layer(layer)),
-        scene::Body::Mesh(mesh) => Ok(Outline::of_mesh(scene, &file_mesh(&bytes(mesh)?, mesh, scene, file)?)),
-    }
-}
-
-impl Outline {
-    /// What the scene's body is, whose mesh is `mesh`.
-    pub fn of(scene: &Scene, meshed: &Meshed) -> Self {
-        match (scene.layer(), meshed) {
-            (Some(layer), _) => Self::of_layer(layer),
-            (None, Meshed::Plane(source)) => Self::of_mesh(scene, &source.mesh()),
-            (None, Meshed::Space(_)) => Self::default(),
-        }
-    }
-
-    fn of_layer(layer: &scene::Layer) -> Self {
-        Self {
-            face: Stretch::of_span(&layer.spans[0]),
-            across: layer.spans.get(1).map(Stretch::of_span),
-            unknowns: layer.unknowns(),
-            cells: [layer.cells(), 0],
-            penalty: None,
-            height: layer.depth,
-            nodes: Vec::new(),
-        }
-    }
-
-    fn of_mesh(scene: &Scene, mesh: &Mesh<2>) -> Self {
-        let triangles = mesh.cells.iter().filter(|cell| cell.kind == Kind::Simplex).count();
-        let face = &mesh.face;
-        Self {
-            face: Stretch::of_mesh(mesh),
-            across: None,
-            unknowns: mesh.free_components(),
-            cells: [mesh.cells.len() - triangles, triangles],
-            penalty: mesh_penalty(scene, mesh).filter(|_| scene.contact.stiffness().is_none()),
-            height: mesh.height(),
-            nodes: face.places.iter().map(|place| [place.x, -place.y]).collect(),
-        }
-    }
-}
-
-impl Stretch {
-    fn of_mesh(mesh: &Mesh<2>) -> Self {
-        let face = &mesh.face;
-        let (edges, periodic) = (face.facets.len(), false);
-        match face.places.as_slice() {
-            [from, .., to] => {
-                let clamped = [0, face.count() - 1]
-                    .map(|end| (mesh.held[face.unknown[end] as usize] == [true; 2]).then_some(-face.places[end].y));
-                Self { from: from.x, to: to.x, edges, periodic, clamped }
-            }
-            // No mesh has a face without an edge.
-            _ => Self { from: 0.0, to: 0.0, edges, periodic, clamped: [None; 2] },
-        }
-    }
-
-    fn of_span(&scene::Span { width, cells, sides }: &scene::Span) -> Self {
-        let clamped = [(sides == scene::Sides::Fixed).then_some(0.0); 2];
-        Self { from: 0.0, to: width, edges: cells, periodic: sides == scene::Sides::Periodic, clamped }
-    }
-
-    /// m
-    pub fn width(&self) -> f64 {
-        self.to - self.from
-    }
-
-    /// Its nodes where its edges are of one length, both ends among them, m.
-    pub fn nodes(self) -> impl Iterator<Item = f64> {
-        (0..=self.edges).map(move |i| self.from + self.width() * (i as f64 / self.edges as f64))
-    }
-
-    /// The mean length of an edge along x, m.
-    pub fn cell(&self) -> f64 {
-        self.width() / self.edges as f64
+        corners,
+        cells: cells.collect(),
     }
 }
 
@@ -207,7 +97,7 @@ impl Stretch {
 pub fn mesh_of(bytes: &[u8], scene: &Scene) -> Result<Meshed> {
     match &scene.body {
         scene::Body::Layer(layer) => Ok(Meshed::of_layer(layered(layer, scene))),
-        scene::Body::Mesh(mesh) => file_mesh(bytes, mesh, scene, &mesh.file).map(Meshed::in_plane),
+        scene::Body::Mesh(mesh) => file_mesh(bytes, mesh, scene, &mesh.file),
     }
 }
 
@@ -242,7 +132,7 @@ fn layered(layer: &scene::Layer, scene: &Scene) -> Layer {
 }
 
 /// The mesh of a .msh file; what is wrong with it is an error of the scene, at the key that asks for it.
-fn file_mesh(bytes: &[u8], mesh: &MeshFile, scene: &Scene, file: &Path) -> Result<Mesh<2>> {
+pub(super) fn file_mesh(bytes: &[u8], mesh: &MeshFile, scene: &Scene, file: &Path) -> Result<Meshed> {
     let name = mesh.file.file_name().unwrap_or_default().to_string_lossy();
     let roles = Roles {
         contact: mesh.contact.clone(),
@@ -254,7 +144,7 @@ fn file_mesh(bytes: &[u8], mesh: &MeshFile, scene: &Scene, file: &Path) -> Resul
         let (role, reason) = match flaw {
             Flaw::File(reason) => return Error::scene(file, "mesh.file", format!("{name}: {reason}")),
             Flaw::Unfit(role, reason) => (role, reason),
-            Flaw::Unknown(role, known) => (role, unknown(&name, role, &roles, &known)),
+            Flaw::Unknown(role, dimension, known) => (role, unknown(&name, (role, dimension), &roles, &known)),
         };
         let key = match role {
             Role::Contact => "mesh.contact".to_owned(),
@@ -264,35 +154,46 @@ fn file_mesh(bytes: &[u8], mesh: &MeshFile, scene: &Scene, file: &Path) -> Resul
         };
         Error::scene(file, key, reason)
     })?;
-    depth_allows(&built, scene, file)?;
-    match mesh_penalty(scene, &built) {
-        None => {}
-        Some(penalty) if penalty.is_finite() && penalty > 0.0 => {}
+    let in_space = matches!(built, Built::Space(_));
+    scene.allows_mesh(in_space).map_err(|(key, reason)| Error::scene(file, key, reason))?;
+    match built {
+        Built::Plane(mesh) => fits(&mesh, scene, file).map(|()| Meshed::Plane(Source::Mesh(mesh))),
+        Built::Space(mesh) => fits(&mesh, scene, file).map(|()| Meshed::Space(Source::Mesh(mesh))),
+    }
+}
+
+/// Whether approach and penalty go with a mesh.
+fn fits<const D: usize>(mesh: &Mesh<D>, scene: &Scene, file: &Path) -> Result<()> {
+    depth_allows(mesh, scene, file)?;
+    match mesh_penalty(scene, mesh) {
+        None => Ok(()),
+        Some(penalty) if penalty.is_finite() && penalty > 0.0 => Ok(()),
         Some(penalty) => {
             let reason = format!("gives a penalty of {penalty:?} Pa/m; give another");
-            return Err(Error::scene(file, "contact.tolerance", reason));
+            Err(Error::scene(file, "contact.tolerance", reason))
         }
     }
-    Ok(built)
 }
 
 /// The message for a group that the file does not have.
-fn unknown(file: &str, role: Role, roles: &Roles, known: &[(i64, Option<String>)]) -> String {
+fn unknown(file: &str, (role, dimension): (Role, usize), roles: &Roles, known: &[(i64, Option<String>)]) -> String {
     const LISTED: usize = 12;
-    let (kind, name) = match role {
-        Role::Contact => ("curve", &roles.contact),
-        Role::Fixed(i) => ("curve", &roles.fixed[i]),
-        Role::Roller(i) => ("curve", &roles.roller[i]),
-        Role::Region(i) => ("surface", &roles.regions[i]),
+    let name = match role {
+        Role::Contact => &roles.contact,
+        Role::Fixed(i) => &roles.fixed[i],
+        Role::Roller(i) => &roles.roller[i],
+        Role::Region(i) => &roles.regions[i],
+    };
+    let [kind, command] = match dimension {
+        1 => ["curve", "Curve"],
+        2 => ["surface", "Surface"],
+        _ => ["volume", "Volume"],
     };
     let names: Vec<&str> = known.iter().filter_map(|(_, name)| name.as_deref()).collect();
     let mut list: Vec<String> = known.iter().take(LISTED).map(|(tag, name)| called(*tag, name.as_deref())).collect();
     list.extend((known.len() > LISTED).then(|| format!("{} more", known.len() - LISTED)));
     let advice = match (list.is_empty(), scene::nearest(name, &names)) {
-        (true, _) => format!(
-            "it has none: give the geometry a Physical {} and mesh again",
-            if kind == "curve" { "Curve" } else { "Surface" }
-        ),
+        (true, _) => format!("it has none: give the geometry a Physical {command} and mesh again"),
         (_, Some(near)) => format!("did you mean {near:?}? It has {}", list.join(", ")),
         _ => format!("it has {}", list.join(", ")),
     };
@@ -300,7 +201,7 @@ fn unknown(file: &str, role: Role, roles: &Roles, known: &[(i64, Option<String>)
 }
 
 /// The indenter does not pass the lowest point of the body.
-fn depth_allows(mesh: &Mesh<2>, scene: &Scene, file: &Path) -> Result<()> {
+fn depth_allows<const D: usize>(mesh: &Mesh<D>, scene: &Scene, file: &Path) -> Result<()> {
     let height = mesh.height();
     let passes = |phase: &&Phase| phase.approaches().iter().any(|(_, approach)| *approach >= height);
     match scene.phases.iter().find(passes) {
@@ -322,7 +223,7 @@ pub fn penalty<const D: usize>(scene: &Scene, source: &Source<D>) -> Option<f64>
     }
 }
 
-fn mesh_penalty<const D: usize>(scene: &Scene, mesh: &Mesh<D>) -> Option<f64> {
+pub(super) fn mesh_penalty<const D: usize>(scene: &Scene, mesh: &Mesh<D>) -> Option<f64> {
     let tolerance = match scene.contact.penalty? {
         scene::Penalty::Stiffness(stiffness) => return Some(stiffness),
         scene::Penalty::Tolerance(tolerance) => tolerance,
@@ -339,12 +240,12 @@ fn mesh_penalty<const D: usize>(scene: &Scene, mesh: &Mesh<D>) -> Option<f64> {
 /// How the scene's cells take their dilatation.
 pub fn dilatation(scene: &Scene) -> Dilatation {
     let element = match &scene.body {
-        scene::Body::Layer(layer) => layer.element,
+        scene::Body::Layer(layer) => Some(layer.element),
         scene::Body::Mesh(mesh) => mesh.element,
     };
     match element {
-        scene::Element::Quad4 | scene::Element::Hex8 => Dilatation::Pointwise,
-        scene::Element::Quad4Bbar | scene::Element::Hex8Bbar => Dilatation::Mean,
+        Some(scene::Element::Quad4Bbar | scene::Element::Hex8Bbar) => Dilatation::Mean,
+        Some(scene::Element::Quad4 | scene::Element::Hex8) | None => Dilatation::Pointwise,
     }
 }
 

@@ -69,9 +69,12 @@ fn first(surface: &dyn Surface, scene: &Scene, outline: &Outline) -> Option<Pres
     })
 }
 
-/// The clamped nodes around the face, m, and how far each is below the highest node, m: in the plane ends of it, in space
-/// whole edges.
+/// The clamped nodes of the face, m, and how far each is below the highest node, m: in the plane ends of it, in space
+/// whole edges, of a mesh those that are held along z.
 fn clamped(outline: &Outline) -> Vec<(Vector2<f64>, f64)> {
+    if !outline.relief.is_empty() {
+        return outline.clamped.iter().map(|spot| (spot.at, spot.recess)).collect();
+    }
     let ends = |along: Stretch| {
         [along.from, along.to].into_iter().zip(along.clamped).filter_map(|(at, recess)| Some((at, recess?)))
     };

@@ -65,7 +65,12 @@ pub(super) fn shape(
         _ => return Ok(None),
     };
     let pressed = pressed_end(&*surface, (scene, file), outline)?;
-    let lowest = lowest(&*surface, face).map_err(|error| wrong("profile", error.to_string()))?;
+    let lowest = match outline.nearest(&*surface) {
+        Ok(Some(nearest)) => Ok(nearest),
+        Ok(None) => lowest(&*surface, face),
+        Err(error) => Err(error),
+    };
+    let lowest = lowest.map_err(|error| wrong("profile", error.to_string()))?;
     let profile: Rc<dyn Profile> = Rc::new(Section { surface: surface.clone(), y: lowest.y });
     let survey = survey(&profile, face[0]).map_err(|error| wrong("profile", error.to_string()))?;
     Ok(Some(Shape { surface, profile, finest, detail, unit, seam, survey, pressed }))

@@ -41,7 +41,8 @@ impl<const D: usize> Cell<D> {
         self.shape().sides().iter().map(|side| side.iter().map(|&corner| self.nodes[corner]).collect())
     }
 
-    /// As many corners as a quadrilateral, or a hexahedron, has; simplices repeat theirs, as the result file has it.
+    /// As many corners as a quadrilateral, or a hexahedron, has; simplices repeat theirs, as the result file has those that
+    /// are not all tetrahedra.
     pub fn as_multilinear(&self) -> Vec<u32> {
         let n = &self.nodes;
         match (self.kind, D) {

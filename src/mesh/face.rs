@@ -77,6 +77,18 @@ impl<const D: usize> Face<D> {
         pairs
     }
 
+    /// The pairs of neighbours round the facets of a face in space, each once, in order.
+    pub fn pairs_along_edges(&self) -> Vec<(usize, usize)> {
+        let of_facet = |facet: &Facet<D>| {
+            let nodes = facet.nodes.clone();
+            (0..nodes.len()).map(move |i| (nodes[i], nodes[(i + 1) % nodes.len()])).map(|(a, b)| (a.min(b), a.max(b)))
+        };
+        let mut pairs: Vec<_> = self.facets.iter().flat_map(of_facet).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+
     /// 1 or -1 of each node: on a grid other than its neighbours', on any other face than most of them.
     pub fn checkerboard(&self) -> Vec<f64> {
         let odd = |parity: usize| if parity.is_multiple_of(2) { 1.0 } else { -1.0 };

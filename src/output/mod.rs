@@ -174,7 +174,7 @@ pub struct BulkPlan {
     pub axes: usize,
     /// Undeformed coordinates of all nodes, m, node after node.
     pub coordinates: Vec<f64>,
-    /// Nodes of a cell: 4 or 8.
+    /// Nodes of a cell: 4, or in space 8, or 4 where all are tetrahedra.
     pub corners: usize,
     /// The nodes of each cell, from 0, cell after cell; those of a quadrilateral counter-clockwise.
     pub cells: Vec<i64>,

@@ -71,7 +71,11 @@ pub(super) fn write(results: &Path, version: &str, mesh: MeshSize, times: &[f64]
 /// components of the stress are scalars.
 fn text(name: &str, version: &str, mesh: MeshSize, times: &[f64]) -> String {
     let MeshSize { nodes, cells, axes, corners } = mesh;
-    let (topology, geometry) = if axes == 3 { ("Hexahedron", "XYZ") } else { ("Quadrilateral", "XY") };
+    let (topology, geometry) = match (axes, corners) {
+        (3, 4) => ("Tetrahedron", "XYZ"),
+        (3, _) => ("Hexahedron", "XYZ"),
+        _ => ("Quadrilateral", "XY"),
+    };
     let frames = times.len();
     let mut out = format!(
         r#"{} {version}; the fields are in the HDF5 file of the same name. -->

@@ -4,9 +4,10 @@
 use std::collections::HashSet;
 use std::path::Path;
 
+use super::keys::tables::{IN_PLANE, IN_SPACE};
 use super::{
-    Arm, Extend, Indenter, Law, Layer, Material, Memory, Motion, Phase, Quadrature, Scene, Sides, Span, Stepping,
-    Strategy, When, keys,
+    Arm, Body, Extend, Indenter, Law, Layer, Material, Memory, MeshFile, Motion, Phase, Quadrature, Scene, Sides, Span,
+    Stepping, Strategy, When, keys,
 };
 use crate::error::{Error, Result};
 
@@ -83,12 +84,30 @@ fn strata(layer: &Layer, materials: &[Material]) -> Check {
     Ok(())
 }
 
-/// What has a direction of its own is for space.
+/// What has a direction of its own is for space; of a mesh, its file says whether it is ([`directions`]).
 fn in_space(scene: &Scene) -> Check {
-    const SPACE: &str = "is for scenes in space: give layer.width as an array of two, along x and along y";
-    let space = scene.is_in_space();
+    const REMEDY: &str = "give layer.width as an array of two, along x and along y";
+    scene.layer().map_or(Ok(()), |layer| directions(scene, layer.spans.len() > 1, REMEDY))
+}
+
+/// Whether a mesh, in the plane or in space, goes with what the scene says.
+pub(super) fn mesh(scene: &Scene, space: bool) -> Check {
+    directions(scene, space, "give a mesh of tetrahedra or hexahedra")?;
+    let Body::Mesh(MeshFile { element: Some(element), .. }) = &scene.body else { return Ok(()) };
+    let (known, what) = match space {
+        false => (IN_PLANE, "a mesh in the plane"),
+        true => (IN_SPACE, "a mesh in space"),
+    };
+    match known.iter().any(|(_, other)| other == element) {
+        true => Ok(()),
+        false => fail("mesh.element", format!("must be {:?} or {:?} for {what}", known[0].0, known[1].0)),
+    }
+}
+
+fn directions(scene: &Scene, space: bool, remedy: &str) -> Check {
+    let for_space = format!("is for scenes in space: {remedy}");
     if scene.indenter.needs_space() && !space {
-        return fail("indenter.profile", SPACE);
+        return fail("indenter.profile", for_space);
     }
     for phase in &scene.phases {
         let (key, across) = match &phase.motion {
@@ -97,7 +116,7 @@ fn in_space(scene: &Scene) -> Check {
             Motion::Measured(record) => ("motion", record.sliding_y.iter().fold(0.0, |most: f64, y| most.max(y.abs()))),
         };
         if across != 0.0 && !space {
-            return fail(&format!("phase.{}.{key}", phase.name), format!("a direction along y {SPACE}"));
+            return fail(&format!("phase.{}.{key}", phase.name), format!("a direction along y {for_space}"));
         }
     }
     Ok(())

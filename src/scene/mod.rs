@@ -79,19 +79,20 @@ pub enum Body {
     Mesh(MeshFile),
 }
 
-/// A Gmsh file and what its named curves are.
+/// A Gmsh file and what its named curves, or surfaces, are.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeshFile {
     /// The .msh file, as an absolute path.
     pub file: PathBuf,
-    /// Physical curve: the contact face.
+    /// Physical curve, in space surface: the contact face.
     pub contact: String,
-    /// Physical curves without displacement; at least one.
+    /// Physical curves, or surfaces, without displacement; at least one.
     pub fixed: Vec<String>,
-    /// Physical curves, straight and along x or z, without displacement across them.
+    /// Physical curves, straight and along x or z, or surfaces across x, y or z, without displacement across them.
     pub roller: Vec<String>,
-    /// What its quadrilaterals are.
-    pub element: Element,
+    /// What its quadrilaterals or hexahedra are; none: fully integrated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub element: Option<Element>,
 }
 
 /// The element for quadrilaterals, and for hexahedra.
@@ -154,7 +155,7 @@ pub enum Sides {
 /// A linear viscoelastic solid: instantaneous elasticity and the Prony arms of the shear modulus.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Material {
-    /// The physical surface of the mesh that it fills; none = all of the mesh, or a stratum of a layer.
+    /// The physical surface, in space volume, of the mesh that it fills; none = all of the mesh, or a stratum of a layer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub region: Option<String>,
     /// Thickness of its stratum, m; none = all that the strata above leave.

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
-use super::{Body, Layer, Material, Phase, Record, Scene, Sides, Span, Stepping, When};
+use super::{Body, Layer, Material, Phase, Record, Scene, Sides, Span, Stepping, When, checks};
 
 impl Scene {
     /// The resolved scene as TOML: every default written out, every duration and modulus in its own key. Reading it
@@ -48,9 +48,17 @@ impl Scene {
         }
     }
 
-    /// Whether it is in space.
+    /// Whether it is in space, as far as that is known without the file of a mesh.
     pub fn is_in_space(&self) -> bool {
         self.layer().is_some_and(|layer| layer.spans.len() == 2)
+    }
+
+    /// Whether a mesh, in the plane or in space, goes with the rest.
+    ///
+    /// # Errors
+    /// The key and the reason why not.
+    pub fn allows_mesh(&self, in_space: bool) -> std::result::Result<(), (String, String)> {
+        checks::mesh(self, in_space)
     }
 
     /// The period along x, m, where the sides are one another's images.

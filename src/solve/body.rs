@@ -233,7 +233,7 @@ impl<const D: usize> Body<D> {
             }
         }
         let values = u.view()?;
-        let mut fields = BulkFields::default();
+        let mut fields = BulkFields { in_space: D == 3, ..BulkFields::default() };
         for (node, &unknown) in self.cells.mesh.unknown.iter().enumerate() {
             if let Some(local) = self.numbering.local(unknown) {
                 fields.nodes.push(node);

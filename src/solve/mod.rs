@@ -135,6 +135,8 @@ impl Contact<'_> {
 /// Nodal fields of the body on this rank.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct BulkFields {
+    /// Whether the body is in space, or in the plane of x and z.
+    pub in_space: bool,
     /// Mesh nodes that this rank supplies.
     pub nodes: Vec<usize>,
     /// Displacement x, y, z, m; none across the plane.

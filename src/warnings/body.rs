@@ -3,7 +3,7 @@
 use super::{Before, Warning, above, material, phase};
 use crate::scene::{Body, Element, Material};
 
-/// Poisson ratio above which bilinear quadrilaterals and triangles lock.
+/// Poisson ratio above which bilinear quadrilaterals and triangles, hexahedra and tetrahedra lock.
 pub const LARGEST_POISSON: f64 = 0.45;
 /// The deepest overlap over the depth of the body: strains are of that order, and are taken to be small.
 pub const DEEPEST: f64 = 0.1;
@@ -17,18 +17,22 @@ pub const MOST_RELAXED: f64 = 1e8;
 /// The Poisson ratio, at any time, above [`LARGEST_POISSON`].
 pub fn locking(before: &Before<'_>) -> Option<Warning> {
     let (element, key) = match &before.scene.body {
-        Body::Layer(layer) => (layer.element, "layer.element"),
+        Body::Layer(layer) => (Some(layer.element), "layer.element"),
         Body::Mesh(mesh) => (mesh.element, "mesh.element"),
     };
-    let [quadrilaterals, triangles] = before.outline.cells;
-    let plain = quadrilaterals > 0 && element == Element::Quad4;
+    let [multilinear, simplices] = before.outline.cells;
+    let plain = multilinear > 0 && !matches!(element, Some(Element::Quad4Bbar | Element::Hex8Bbar));
     let largest = before.scene.materials.iter().map(long_term_poisson).fold(f64::NEG_INFINITY, f64::max);
-    if !above(largest, LARGEST_POISSON) || !(plain || triangles > 0) {
+    if !above(largest, LARGEST_POISSON) || !(plain || simplices > 0) {
         return None;
     }
+    let [cell, simplex, multilinear] = match before.outline.is_in_space() {
+        false => ["q4", "triangles", "quadrilaterals"],
+        true => ["h8", "tetrahedra", "hexahedra"],
+    };
     let (what, key, remedy) = match plain {
-        true => ("q4", key, "element = \"q4_bbar\""),
-        false => ("triangles", "mesh.file", "a mesh of quadrilaterals, and element = \"q4_bbar\""),
+        true => (cell, key, format!("element = \"{cell}_bbar\"")),
+        false => (simplex, "mesh.file", format!("a mesh of {multilinear}, and element = \"{cell}_bbar\"")),
     };
     let text = format!(
         "{what} with a Poisson ratio of {largest:.8} (above {LARGEST_POISSON}) lock: the body is too stiff, by 30 % with 8 cells \

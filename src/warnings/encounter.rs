@@ -63,7 +63,7 @@ impl Encounters {
     pub fn new(scene: &Scene, outline: &Outline, shape: &Shape) -> Self {
         let course = course(scene);
         let relief = Relief::new(scene, outline, shape);
-        let sites = Sites::new(outline);
+        let sites = Sites::new(outline, shape);
         let moments = moments(&course);
         let list: Vec<Encounter> = moments.iter().map(|moment| sites.meet(&relief, moment)).collect();
         let low = moments.iter().zip(&list).map(|(moment, met)| moment.approach - met.overlap);
@@ -200,10 +200,11 @@ struct Sites {
 }
 
 impl Sites {
-    fn new(outline: &Outline) -> Self {
+    fn new(outline: &Outline, shape: &Shape) -> Self {
         let face = outline.face;
         let (edges, cell, periodic) = (face.edges as f64, face.cell(), face.periodic);
-        if outline.nodes.is_empty() {
+        let nodes = outline.section(&*shape.surface);
+        if nodes.is_empty() {
             let per_edge = if face.edges <= MOST_EDGES { POINTS } else { 1 };
             let pieces = face.edges.min(MOST_EDGES) * per_edge;
             let x = |k: usize| face.from + face.width() * (k as f64 / pieces as f64);
@@ -214,7 +215,7 @@ impl Sites {
             let ends = [pair[0], pair[1]];
             (0..POINTS).map(move |k| mix(ends, k as f64 / POINTS as f64))
         };
-        let points = outline.nodes.windows(2).flat_map(inside).chain(outline.nodes.last().copied()).collect();
+        let points = nodes.windows(2).flat_map(inside).chain(nodes.last().copied()).collect();
         Self { points, per_edge: POINTS, edges, cell, periodic }
     }
 

@@ -53,8 +53,10 @@ struct Before<'a> {
 /// What is known of it after that.
 struct After<'a> {
     scene: &'a Scene,
-    /// Nodes of the contact face, as if all edges were like the shortest.
+    /// Nodes of the contact face: along it as if all edges were like the shortest, in space all of them.
     nodes: f64,
+    /// Whether it is in space.
+    in_space: bool,
     /// The approach at which the indenter first touches, m.
     touch: f64,
     /// Row 0 is the unloaded state.
@@ -99,6 +101,7 @@ pub struct Doubts {
     /// What can be said before it is solved.
     pub before: Vec<Warning>,
     nodes: f64,
+    in_space: bool,
     touch: f64,
 }
 
@@ -110,13 +113,17 @@ impl Doubts {
         let before = Before { scene, outline, shape, encounters };
         let before = BEFORE.iter().filter_map(|check| check(&before)).collect();
         let lengths = outline.nodes.windows(2).map(|pair| pair[1][0] - pair[0][0]);
-        let nodes = outline.face.width() / lengths.fold(outline.face.cell(), f64::min);
-        Self { before, nodes, touch }
+        let in_space = outline.is_in_space();
+        let nodes = match in_space {
+            true => outline.face_nodes as f64,
+            false => outline.face.width() / lengths.fold(outline.face.cell(), f64::min),
+        };
+        Self { before, nodes, in_space, touch }
     }
 
     /// What the history of the same scene says besides.
     pub fn after(&self, scene: &Scene, history: &[HistoryRow]) -> Vec<Warning> {
-        let after = After { scene, nodes: self.nodes, touch: self.touch, history };
+        let after = After { scene, nodes: self.nodes, in_space: self.in_space, touch: self.touch, history };
         AFTER.iter().filter_map(|check| check(&after)).collect()
     }
 }

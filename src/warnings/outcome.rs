@@ -26,8 +26,10 @@ impl After<'_> {
         self.history.iter().map(value).fold(0.0, f64::max)
     }
 
+    /// How many nodes in contact there are along the face; in space, across a square with as many.
     fn nodes(&self, row: &HistoryRow) -> f64 {
-        row.contact_fraction * self.nodes
+        let all = row.contact_fraction * self.nodes;
+        if self.in_space { all.sqrt() } else { all }
     }
 
     /// The deepest approach since first touch, m.
@@ -237,7 +239,7 @@ mod tests {
 
     fn check(what: fn(&After<'_>) -> Option<Warning>, change: impl Fn(usize, &mut HistoryRow)) -> String {
         let (scene, history) = (scene(), history(change));
-        let after = After { scene: &scene, nodes: 100.0, touch: 0.0, history: &history };
+        let after = After { scene: &scene, nodes: 100.0, in_space: false, touch: 0.0, history: &history };
         what(&after).map_or_else(String::new, |warning| warning.to_string())
     }
 
@@ -264,7 +266,7 @@ mod tests {
             let mut scene = scene();
             scene.solver.strategy = strategy;
             let history = history(|i, row| row.max_penetration = if i < 4 { 0.0 } else { metre });
-            let after = After { scene: &scene, nodes: 100.0, touch: 0.0, history: &history };
+            let after = After { scene: &scene, nodes: 100.0, in_space: false, touch: 0.0, history: &history };
             digits(&after).map_or_else(String::new, |warning| warning.to_string())
         };
         assert_eq!((shallow(2.3e-13, Strategy::Monolithic), shallow(2e-13, Strategy::Auto)), Default::default());

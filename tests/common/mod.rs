@@ -6,6 +6,7 @@ pub mod msh;
 pub mod program;
 pub mod sample;
 pub mod smallest;
+pub mod solid;
 
 use std::path::{Path, PathBuf};
 

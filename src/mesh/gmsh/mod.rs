@@ -1,19 +1,24 @@
 //! Gmsh .msh files, versions 2.0 to 2.2 and 4.1, text or binary, as meshes.
 //!
 //! Gmsh reference manual, "MSH file format" (4.1) and "MSH file format version 2 (Legacy)" (2.2). What the file must
-//! hold: first-order triangles and quadrilaterals in a plane, and physical curves of which one is the contact face. Files are read on one rank and parsed on all.
+//! hold: first-order triangles and quadrilaterals in a plane, and physical curves of which one is the contact face; or, in space,
+//! first-order tetrahedra and hexahedra, and physical surfaces. Files are read on one rank and parsed on all.
 
 mod boundary;
 mod build;
 mod input;
+mod line;
 mod read;
+mod surface;
 mod v2;
 mod v4;
 
 #[cfg(test)]
 mod tests;
 
-pub use build::{Roles, build};
+use crate::element::{self, MOST_CORNERS};
+
+pub use build::{Built, Roles, build};
 pub use read::read;
 
 /// What a file holds, as it stands there.
@@ -21,7 +26,7 @@ pub use read::read;
 pub struct Contents {
     /// The nodes.
     nodes: Vec<Node>,
-    /// Lines, triangles and quadrilaterals.
+    /// Lines, triangles, quadrilaterals, tetrahedra and hexahedra.
     elements: Vec<Element>,
     /// The physical groups: dimension, number, name.
     names: Vec<(usize, i64, String)>,
@@ -45,7 +50,7 @@ struct Element {
     tag: u64,
     kind: Kind,
     /// Numbers of its nodes; the first `kind.nodes()` count.
-    nodes: [u64; 4],
+    nodes: [u64; MOST_CORNERS],
     /// Index into [`Contents::groups`].
     group: usize,
 }
@@ -56,6 +61,8 @@ enum Kind {
     Line,
     Triangle,
     Quadrilateral,
+    Tetrahedron,
+    Hexahedron,
 }
 
 impl Kind {
@@ -63,12 +70,32 @@ impl Kind {
         match self {
             Self::Line => 2,
             Self::Triangle => 3,
-            Self::Quadrilateral => 4,
+            Self::Quadrilateral | Self::Tetrahedron => 4,
+            Self::Hexahedron => 8,
         }
     }
 
     fn dimension(self) -> usize {
-        if self == Self::Line { 1 } else { 2 }
+        match self {
+            Self::Line => 1,
+            Self::Triangle | Self::Quadrilateral => 2,
+            Self::Tetrahedron | Self::Hexahedron => 3,
+        }
+    }
+
+    /// What it is as a cell of its own dimension.
+    fn cell(self) -> element::Kind {
+        match self {
+            Self::Line | Self::Quadrilateral | Self::Hexahedron => element::Kind::Multilinear,
+            Self::Triangle | Self::Tetrahedron => element::Kind::Simplex,
+        }
+    }
+}
+
+impl Contents {
+    /// 3 where there are volumes, else 2.
+    fn dimension(&self) -> usize {
+        self.elements.iter().map(|element| element.kind.dimension()).fold(2, usize::max)
     }
 }
 
@@ -77,8 +104,8 @@ impl Kind {
 pub enum Flaw {
     /// In the file; the text says the line or the element.
     File(String),
-    /// No physical group of this name; the numbers and names of the file's groups of that dimension.
-    Unknown(Role, Vec<(i64, Option<String>)>),
+    /// No physical group of this name and of this dimension; the numbers and names of those that the file has.
+    Unknown(Role, usize, Vec<(i64, Option<String>)>),
     /// A physical group that cannot be what it is asked to be.
     Unfit(Role, String),
 }
@@ -88,7 +115,7 @@ pub enum Flaw {
 pub enum Role {
     /// The contact face.
     Contact,
-    /// The i-th of the fixed curves.
+    /// The i-th of the fixed curves or surfaces.
     Fixed(usize),
     /// The i-th of the rollers.
     Roller(usize),

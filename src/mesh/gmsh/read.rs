@@ -1,13 +1,13 @@
 //! A .msh file as it stands: the sections, whatever the version.
 
 use super::input::{Form, Input, short};
-use super::{Contents, Element, Flaw, Kind, Outcome, v2, v4};
+use super::{Contents, Element, Flaw, Kind, MOST_CORNERS, Outcome, v2, v4};
 
 /// Reads a file.
 ///
 /// # Errors
 /// [`Flaw::File`] with the line (or the byte) where it is not a .msh file of version 2.0 to 2.2 or 4.1, or holds elements
-/// other than points, lines, triangles and quadrilaterals of first order.
+/// other than points, lines, triangles, quadrilaterals, tetrahedra and hexahedra of first order.
 pub fn read(bytes: &[u8]) -> Outcome<Contents> {
     sections(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)).map_err(Flaw::File)
 }
@@ -108,12 +108,15 @@ pub(super) fn kind(input: &Input, number: i64, tag: u64) -> Result<Option<Kind>,
         1 => return Ok(Some(Kind::Line)),
         2 => return Ok(Some(Kind::Triangle)),
         3 => return Ok(Some(Kind::Quadrilateral)),
+        4 => return Ok(Some(Kind::Tetrahedron)),
+        5 => return Ok(Some(Kind::Hexahedron)),
         15 => return Ok(None),
-        8..=10 | 16 | 20..=28 => "is of second or higher order; mesh with first order (gmsh -order 1)".to_owned(),
-        4..=7 | 11..=14 | 17..=19 | 29..=31 => {
-            "is three-dimensional; mesh in two dimensions (gmsh -2) and save no volume".to_owned()
-        }
-        _ => format!("is of Gmsh's type {number}; only lines, triangles and quadrilaterals are read"),
+        6 => "is a prism; mesh with tetrahedra or hexahedra alone".to_owned(),
+        7 => "is a pyramid; mesh with tetrahedra or hexahedra alone".to_owned(),
+        8..=14 | 16..=31 => "is of second or higher order; mesh with first order (gmsh -order 1)".to_owned(),
+        _ => format!(
+            "is of Gmsh's type {number}; only lines, triangles, quadrilaterals, tetrahedra and hexahedra are read"
+        ),
     };
     Err(input.error(format!("element {tag} {what}")))
 }
@@ -124,7 +127,7 @@ pub(super) fn element(
     (kind, tag, group): (Option<Kind>, u64, usize),
     mut node: impl FnMut() -> Result<u64, String>,
 ) -> Result<(), String> {
-    let mut nodes = [0; 4];
+    let mut nodes = [0; MOST_CORNERS];
     for place in &mut nodes[..kind.map_or(1, Kind::nodes)] {
         *place = node()?;
     }

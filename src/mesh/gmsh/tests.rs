@@ -2,7 +2,15 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use super::*;
-use crate::mesh::Cell;
+use crate::mesh::{Cell, Mesh};
+
+/// A mesh in the plane.
+fn build(contents: &Contents, roles: &Roles) -> Outcome<Mesh<2>> {
+    super::build(contents, roles).map(|built| match built {
+        Built::Plane(mesh) => mesh,
+        Built::Space(_) => panic!("a mesh in space"),
+    })
+}
 
 /// A plate over a layer of two surfaces that are oriented oppositely, with a triangle pair, an unused node, an arched
 /// face, and two groups; version 2.2. Numbers have gaps.
@@ -147,7 +155,7 @@ fn groups_have_numbers() {
     let partly = legacy.replace("$PhysicalNames\n5", "$PhysicalNames\n4").replace("1 7 \"left\"\n", "");
     let wrong = Roles { contact: text("top"), ..roles() };
     let known = vec![(1, Some(text("contact"))), (2, Some(text("base of it"))), (7, None)];
-    assert_eq!(build(&read(partly.as_bytes()).unwrap(), &wrong), Err(Flaw::Unknown(Role::Contact, known)));
+    assert_eq!(build(&read(partly.as_bytes()).unwrap(), &wrong), Err(Flaw::Unknown(Role::Contact, 1, known)));
 }
 
 /// Gmsh writes no groups into version 2.2 when it saves everything.
@@ -309,4 +317,91 @@ fn damaged_files_are_refused() {
             }
         }
     }
+}
+
+/// Files by Gmsh 4.15 of a box of 1 x 1 x 0.5 m in tetrahedra, with the surfaces "contact" (1), "base" (2) and "left" (3) and the volume
+/// "body" (7): both versions, text and binary.
+#[test]
+fn boxes_of_tetrahedra() {
+    const FILES: [&[u8]; 4] = [
+        include_bytes!("../../../tests/scenes/data/box-text-4.1.msh"),
+        include_bytes!("../../../tests/scenes/data/box.msh"),
+        include_bytes!("../../../tests/scenes/data/box-binary-2.2.msh"),
+        include_bytes!("../../../tests/scenes/data/box-binary-4.1.msh"),
+    ];
+    let text = |name: &str| name.to_owned();
+    let roles = Roles {
+        contact: text("contact"),
+        fixed: vec![text("base")],
+        roller: vec![text("left")],
+        regions: vec![text("body")],
+    };
+    let meshes = FILES.map(|file| match super::build(&read(file).unwrap(), &roles).unwrap() {
+        Built::Space(mesh) => mesh,
+        Built::Plane(_) => panic!("a box in the plane"),
+    });
+    let mesh = &meshes[0];
+    let volume = |cell: &Cell<3>| {
+        let dilatation = crate::element::solid::Dilatation::Pointwise;
+        crate::element::solid::Placed { shape: cell.shape(), corners: &mesh.places(cell), dilatation }.volume()
+    };
+    assert!(mesh.cells.iter().all(|cell| volume(cell) > 0.0));
+    assert!((mesh.cells.iter().map(volume).sum::<f64>() - 0.5).abs() < 1e-14);
+    let up: nalgebra::Vector3<f64> =
+        mesh.face.facets.iter().flat_map(|facet| facet.at_nodes()).map(|point| point.area).sum();
+    assert!((up - nalgebra::Vector3::new(0.0, 0.0, 1.0)).norm() < 1e-14 && mesh.face.grid.is_none());
+    let held = |held: [bool; 3]| mesh.held.iter().filter(|other| **other == held).count();
+    let at = |is: &dyn Fn(&nalgebra::Vector3<f64>) -> bool| mesh.nodes.iter().filter(|node| is(node)).count();
+    assert_eq!(held([true; 3]), at(&|node| node.z == -0.5));
+    assert_eq!(held([true, false, false]), at(&|node| node.x == 0.0 && node.z > -0.5));
+    for other in &meshes[1..] {
+        assert_eq!((&other.cells, &other.held, &other.face.unknown), (&mesh.cells, &mesh.held, &mesh.face.unknown));
+        let off = other.nodes.iter().zip(&mesh.nodes).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(off < 1e-15, "{off}");
+    }
+}
+
+/// Two hexahedra, one of them mirrored, over two more: the face is a grid, in whatever order it is numbered; torn or turned over it is refused.
+#[test]
+fn faces_of_hexahedra() {
+    let nodes = [[2.0, 0.0], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]];
+    let mut text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n2 1 \"top\"\n2 2 \"base\"\n3 3 \"body\"\n\
+                    $EndPhysicalNames\n$Nodes\n12\n"
+        .to_owned();
+    for (i, [x, y]) in nodes.iter().enumerate() {
+        text += &format!("{} {x} {y} 0\n{} {x} {y} {}\n", i + 1, i + 7, -1.0 - 0.1 * x);
+    }
+    text += "$EndNodes\n$Elements\n6\n1 3 2 1 1 2 3 5 4\n2 3 2 1 1 1 3 5 6\n3 3 2 2 2 8 9 11 10\n4 3 2 2 2 7 9 11 12\n\
+             5 5 2 3 3 8 9 11 10 2 3 5 4\n6 5 2 3 3 3 1 6 5 9 7 12 11\n$EndElements\n";
+    let roles = |contact: &str, roller: &[&str]| Roles {
+        contact: contact.into(),
+        fixed: vec!["base".into()],
+        roller: roller.iter().map(|name| (*name).to_owned()).collect(),
+        regions: Vec::new(),
+    };
+    let built = |text: &str, roles: &Roles| super::build(&read(text.as_bytes()).unwrap(), roles);
+    let Ok(Built::Space(mesh)) = built(&text, &roles("top", &["top"])) else { panic!("no mesh in space") };
+    let grid = mesh.face.grid.as_ref().unwrap();
+    assert_eq!(
+        grid.axes.iter().map(|axis| axis.places.clone()).collect::<Vec<_>>(),
+        [vec![0.0, 1.0, 2.0], vec![0.0, 1.0]]
+    );
+    let places: Vec<[f64; 3]> = mesh.face.places.iter().map(|place| (*place).into()).collect();
+    assert_eq!(places[..3], [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]);
+    assert!(mesh.face.unknown.iter().all(|&node| mesh.held[node as usize] == [false, false, true]));
+    let refused = |text: &str, roles: &Roles| match built(text, roles) {
+        Err(Flaw::Unfit(_, reason) | Flaw::File(reason)) => reason,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(refused(&text, &roles("top", &["base"])), "must be plane, across x, y or z, to be held across only");
+    // The two parts of the face meet at no edge once a part is missing, and at a node that moved they are no sides of cells.
+    let torn = text.replace("1 3 2 1 1 2 3 5 4\n", "1 3 2 1 1 2 3 5 9\n");
+    assert_eq!(refused(&torn, &roles("top", &[])), "its surface element 1 is no facet of the outline of the body");
+    let folded = text.replace("5 5 2 3 3 8 9 11 10 2 3 5 4", "5 5 2 3 3 8 9 11 10 2 5 3 4");
+    assert!(
+        refused(&folded, &roles("top", &[]))
+            .contains("element 5 at (5.0000e-1, 5.0000e-1, -5.2500e-1) m is degenerate")
+    );
+    let inverted = text.replace("5 5 2 3 3", "5 5 2 2 3").replace("3 3 \"body\"", "3 2 \"body\"");
+    assert!(built(&inverted, &roles("top", &[])).is_ok());
 }

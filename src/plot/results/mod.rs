@@ -92,6 +92,11 @@ pub struct Kind {
     sheet: fn(&Run) -> Result<Sheet>,
 }
 
+/// What only a face with two directions has.
+const COORDINATES: &str = "interface/coordinates";
+
+const NO_LAYER: &str = "a body in space from a mesh (ParaView opens its XDMF file)";
+
 /// All figures of a result file.
 pub const FIGURES: [Kind; 11] = [
     Kind { name: "history", shows: "forces against time", lacks: |_| None, sheet: history::sheet },
@@ -120,6 +125,9 @@ pub const FIGURES: [Kind; 11] = [
         name: "stress",
         shows: "stress in the bulk (Figure 5); in space in the section along x where the contact is deepest",
         lacks: |run| {
+            if run.is_in_space() && run.scene.layer().is_none() {
+                return Some(NO_LAYER);
+            }
             let found = run.results.has("bulk/stress") && run.results.bulk("time").is_ok_and(|time| time.rows > 0);
             (!found).then_some("no bulk fields (the scene's output.bulk_at asks for them)")
         },
@@ -194,7 +202,7 @@ impl Run {
             values if values.len() == time.len() => Ok(values),
             values => Err(refused(format!("/history/{name} has {} values for {} times", values.len(), time.len()))),
         };
-        let space = scene.is_in_space();
+        let space = results.has(COORDINATES);
         let mut sliding = column("sliding")?;
         if space {
             sliding.iter_mut().zip(across("sliding")?).for_each(|(x, y)| *x = x.hypot(y));
@@ -219,7 +227,7 @@ impl Run {
 
     /// The unit of forces, and that of energies.
     fn units(&self) -> [&'static str; 2] {
-        if self.scene.is_in_space() { ["N", "J"] } else { ["N/m", "J/m"] }
+        if self.is_in_space() { ["N", "J"] } else { ["N/m", "J/m"] }
     }
 
     /// Whether all phases were solved.
@@ -260,13 +268,21 @@ impl Run {
         self.history.sliding[nearest(&self.history.time, time)]
     }
 
+    /// Whether it is in space.
+    fn is_in_space(&self) -> bool {
+        self.results.has(COORDINATES)
+    }
+
     fn lacks_interface(&self) -> Option<&'static str> {
+        if self.is_in_space() && self.scene.layer().is_none() {
+            return Some(NO_LAYER);
+        }
         let found = self.results.interface("time").is_ok_and(|time| time.rows > 0);
         (!found).then_some("no interface profiles")
     }
 
     fn lacks_space(&self) -> Option<&'static str> {
-        match self.scene.is_in_space() {
+        match self.is_in_space() {
             true => self.lacks_interface(),
             false => Some("it is for runs in space"),
         }

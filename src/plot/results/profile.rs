@@ -10,7 +10,7 @@ use crate::plot::{Axis, Curve, Figure, PALETTE, REFERENCE, Sheet, Stroke};
 /// At the end of the approach and at the end: the profile where it stands, and the face as it is deformed, around the
 /// contact.
 pub fn sheet(run: &Run) -> Result<Sheet> {
-    if run.scene.is_in_space() {
+    if run.is_in_space() {
         return super::space::sections::shapes(run);
     }
     let face = run.face()?;

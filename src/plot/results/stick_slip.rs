@@ -16,7 +16,7 @@ const COLUMNS: usize = 900;
 
 /// The approach, the transition to sliding, and the whole history.
 pub fn sheet(run: &Run) -> Result<Sheet> {
-    if run.scene.is_in_space() {
+    if run.is_in_space() {
         return super::space::maps::stick_slip(run);
     }
     let face = run.face()?;

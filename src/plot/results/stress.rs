@@ -62,7 +62,7 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
 
 /// t = 10 s, or s/λ = 0.5 while sliding.
 fn moment(run: &Run, time: f64) -> String {
-    match (run.slid(time), run.period().filter(|_| !run.scene.is_in_space())) {
+    match (run.slid(time), run.period().filter(|_| !run.is_in_space())) {
         (0.0, _) => format!("t = {} s", short(time, 4)),
         (slid, Some(period)) => format!("s = {} λ", short(slid / period, 3)),
         (slid, None) => format!("s = {} m", short(slid, 3)),
@@ -112,7 +112,7 @@ impl Bulk {
             let rows = found.rows;
             run.checked(&format!("bulk/{name}"), found, (rows, columns))
         };
-        let (axes, corners, components) = if run.scene.is_in_space() { (3, 8, SPACE) } else { (2, 4, PLANE) };
+        let (axes, corners, components) = if run.is_in_space() { (3, 8, SPACE) } else { (2, 4, PLANE) };
         let (time, coordinates, cells) = (read("time", 1)?, read("coordinates", axes)?, read("cells", corners)?);
         let count = coordinates.rows;
         let stress = run.checked("bulk/stress", field("stress")?, (time.rows, components.1 * count))?;
@@ -132,7 +132,7 @@ impl Bulk {
         });
         let nodes: Vec<[f64; 2]> = nodes.collect();
         let cells = self.cells.values.chunks_exact(self.cells.columns.max(1));
-        if !run.scene.is_in_space() {
+        if !run.is_in_space() {
             let cells = cells.map(|c| [0, 1, 2, 3].map(|i| c[i] as usize)).collect();
             let named = (0..nodes.len()).collect();
             return Ok(Section { nodes, named, cells, centre: None, place: String::new() });

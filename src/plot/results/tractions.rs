@@ -25,7 +25,7 @@ struct Stage {
 
 /// A panel for each stage: the shear traction between the bounds that the pressure sets it, or the pressure alone.
 pub fn sheet(run: &Run) -> Result<Sheet> {
-    if run.scene.is_in_space() {
+    if run.is_in_space() {
         return super::space::sections::tractions(run);
     }
     let face = run.face()?;

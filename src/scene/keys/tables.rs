@@ -64,6 +64,8 @@ pub(crate) const SIDES: [(&str, Sides); 4] =
     [("periodic", Sides::Periodic), ("free", Sides::Free), ("roller", Sides::Roller), ("fixed", Sides::Fixed)];
 pub(crate) const IN_PLANE: [(&str, Element); 2] = [("q4", Element::Quad4), ("q4_bbar", Element::Quad4Bbar)];
 pub(crate) const IN_SPACE: [(&str, Element); 2] = [("h8", Element::Hex8), ("h8_bbar", Element::Hex8Bbar)];
+/// Of a mesh, which is in the plane or in space by what its file holds.
+pub(crate) const ELEMENTS: [(&str, Element); 4] = [IN_PLANE[0], IN_PLANE[1], IN_SPACE[0], IN_SPACE[1]];
 
 static LAYER: Keys = table(
     "A rectangular layer. Its lower face is clamped, its upper face is the contact face, x runs from 0 to width.",
@@ -88,24 +90,27 @@ static LAYER: Keys = table(
             .default("1.0")
             .about("height of the lowest cell over that of the top cell; a geometric series"),
         Key::new("sides", Kind::ChoiceOrPair(&words(&SIDES))).required().about("roller: no normal displacement"),
-        choice("element", &["q4", "q4_bbar", "h8", "h8_bbar"])
-            .about("q4, or h8 in space; with _bbar for Poisson ratios near 1/2"),
+        choice("element", &words(&ELEMENTS)).about("q4, or h8 in space; with _bbar for Poisson ratios near 1/2"),
     ],
 );
 
-const CURVES: &str = "an array of names or numbers of physical curves";
+const CURVES: &str = "an array of names or numbers of physical curves, in space of surfaces";
 
 static MESH: Keys = table(
-    "A plane mesh from Gmsh, instead of [layer].",
+    "A mesh from Gmsh, instead of [layer]: in the plane, or in space where it has tetrahedra or hexahedra.",
     &[
         Key::new("file", Kind::Text("the path of a Gmsh .msh file, relative to the scene")).required(),
-        Key::new("contact", Kind::Label("the name or number of the physical curve that is the contact face"))
-            .required(),
+        Key::new(
+            "contact",
+            Kind::Label("the name or number of the physical curve, in space surface, that is the contact face"),
+        )
+        .required(),
         Key::new("fixed", Kind::Labels(CURVES)).required().about("without displacement"),
         Key::new("roller", Kind::Labels(CURVES))
             .default("[]")
-            .about("straight along x or z, without displacement across"),
-        choice("element", &words(&IN_PLANE)).default("\"q4\"").about("q4_bbar: for Poisson ratios near 1/2"),
+            .about("straight along x or z, in space plane across x, y or z, without displacement across"),
+        choice("element", &words(&ELEMENTS))
+            .about("q4, or h8 in space; with _bbar for Poisson ratios near 1/2; otherwise fully integrated"),
     ],
 );
 
@@ -171,7 +176,7 @@ static MATERIAL: Keys = table("A linear viscoelastic material.", material!());
 static FILLING: Keys = table(
     "A linear viscoelastic material; several for strata of a layer, from the face down, or for regions of a mesh.",
     material!(
-        Key::new("region", Kind::Label("the name or number of the physical surface that it fills")),
+        Key::new("region", Kind::Label("the name or number of the physical surface, in space volume, that it fills")),
         number("thickness", Quantity::positive("a positive thickness in m, from the contact face down"))
             .about("of a stratum, for all but the last")
     ),

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::material;
 use crate::error::Result;
 use crate::rheology::Loading;
-use crate::scene::keys::tables::{IN_PLANE, IN_SPACE, SIDES};
+use crate::scene::keys::tables::{ELEMENTS, IN_PLANE, IN_SPACE, SIDES};
 use crate::scene::keys::{Section, label};
 use crate::scene::{Body, Element, Layer, Material, MeshFile, Sides, Span};
 
@@ -59,7 +59,7 @@ fn sides(section: &Section, directions: usize) -> Result<Vec<Sides>> {
 }
 
 fn mesh(section: &Section, scene: &Path) -> Result<MeshFile> {
-    section.later(&[("sides", "name the curves that are held: fixed, roller")])?;
+    section.later(&[("sides", "name the curves, or surfaces, that are held: fixed, roller")])?;
     section.only_known()?;
     let relative = section.optional_text("file")?.ok_or_else(|| section.missing("file", section.what("file")))?;
     let joined = scene.parent().unwrap_or(Path::new("")).join(relative);
@@ -71,15 +71,16 @@ fn mesh(section: &Section, scene: &Path) -> Result<MeshFile> {
     let fixed = names(section, "fixed")?;
     if fixed.is_empty() {
         let wrong = if section.has("fixed") { "empty" } else { "missing" };
-        let reason =
-            format!("{wrong}; give the names or numbers of the physical curves that are held, so that the body stays");
+        let reason = format!(
+            "{wrong}; give the names or numbers of what is held (physical curves, in space surfaces), so that the body stays"
+        );
         return Err(section.error("fixed", reason));
     }
-    let element = section.optional_choice("element", &IN_PLANE, &[])?.unwrap_or(Element::Quad4);
+    let element = section.optional_choice("element", &ELEMENTS, &[])?;
     Ok(MeshFile { file, contact, fixed, roller: names(section, "roller")?, element })
 }
 
-/// An array of names or numbers of physical curves, each once; empty when absent.
+/// An array of names or numbers of physical curves or surfaces, each once; empty when absent.
 fn names(section: &Section, key: &str) -> Result<Vec<String>> {
     let mut names: Vec<String> = Vec::new();
     for (index, value) in section.values(key)?.iter().enumerate() {
@@ -89,7 +90,13 @@ fn names(section: &Section, key: &str) -> Result<Vec<String>> {
                 return Err(section.error(&at, format!("{name:?} is in the list already")));
             }
             Some(name) => names.push(name),
-            None => return Err(section.must_be(&at, "the name or number of a physical curve", value)),
+            None => {
+                return Err(section.must_be(
+                    &at,
+                    "the name or number of a physical curve, in space of a surface",
+                    value,
+                ));
+            }
         }
     }
     Ok(names)
@@ -131,9 +138,8 @@ fn filling(section: &Section, (body, last): (&Body, bool), loading: Option<&Load
 /// The thickness of a stratum, m: of all but the lowest.
 fn thickness(section: &Section, body: &Body, last: bool) -> Result<Option<f64>> {
     match body {
-        Body::Mesh(_) if section.has("thickness") => {
-            Err(section.error("thickness", "is for the strata of a [layer]; give region, a physical surface"))
-        }
+        Body::Mesh(_) if section.has("thickness") => Err(section
+            .error("thickness", "is for the strata of a [layer]; give region, a physical surface (in space, volume)")),
         Body::Layer(_) if section.has("region") => {
             Err(section.error("region", "is for a [mesh]; give thickness, that of a stratum of the layer"))
         }
