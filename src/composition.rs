@@ -40,7 +40,7 @@ use crate::solve::{
 
 use body::Materials;
 pub use body::Meshed;
-pub use estimate::Estimate;
+pub use estimate::{Estimate, affordable};
 pub use inputs::inputs;
 pub use outline::{Outline, Stretch, outline};
 pub use pressed::PressedEnd;

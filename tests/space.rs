@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::program::{Outcome, Run};
+use common::program::{Outcome, Run, ends_with, program};
 
 /// A cosine pressed beyond full contact of its middle, slid, and lifted again.
 const WAVE: &str = r#"
@@ -181,6 +181,21 @@ fn condensed_is_the_same_discrete_solution_in_space() {
                 assert!(difference(&a, &b) < 1e-8, "{case:?} on {ranks}, {field}: {:.1e}", difference(&a, &b));
             }
         }
+    }
+}
+
+/// A body whose factor no machine has the memory for, some 500 n^(4/3) bytes for 48 million unknowns, is refused by `check` and `run` before
+/// any is taken, with the remedy.
+#[test]
+fn bodies_beyond_the_memory_are_refused() {
+    for command in ["check", "run"] {
+        let run = Run::new(SPHERE);
+        let large = ["--set", "layer.sides=free", "--set", "layer.cells=[400,400,100]"];
+        let mut program = program(1);
+        program.current_dir(run.directory()).args([command, "scene.toml"]).args(large);
+        let message = ends_with(&mut program, 2);
+        assert!(message.contains("layer.cells: needs about "), "{command}: {message}");
+        assert!(message.contains("or sides that are periodic along x and y"), "{command}: {message}");
     }
 }
 

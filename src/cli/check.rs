@@ -9,7 +9,7 @@ use super::terminal::{answer, doubt, tell};
 use super::{json, profile, summary};
 use crate::composition;
 use crate::error::Result;
-use crate::scene::{self, Source};
+use crate::scene::{self, Source, Strategy};
 use crate::warnings::Doubts;
 
 /// The arguments of `mpjr check`.
@@ -35,6 +35,10 @@ pub fn run(arguments: &CheckArguments) -> Result<()> {
     let scene = scene::read(&scene::open(file)?, &source)?;
     let measured = composition::measured(&scene, file)?;
     let outline = composition::outline(&scene, file)?;
+    // All unknowns are shared by as many ranks as a run may have.
+    if scene.solver.strategy != Strategy::Monolithic {
+        composition::affordable(&scene, file, &outline, 1)?;
+    }
     let shape = composition::shape(&scene, file, &measured.numbers, &outline)?;
     tell(scene.to_toml().trim_end());
     tell(format_args!("\n{}", commented(&profile::describe(&scene, measured.note.as_deref(), &shape, &outline))));
