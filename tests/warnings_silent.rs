@@ -126,6 +126,8 @@ const MESHES: &[(&str, &str, &[&str])] = &[
     ("appendix-a-coupled", "half_disk.msh", &[]),
     ("laminate-cells", "laminate.msh", &["phase.hold.steps=20"]),
     ("laminate-strata", "", &["phase.hold.steps=20"]),
+    ("laminate-textured", "", &["layer.cells=[16,16,12]"]),
+    ("dome", "dome.msh", &[]),
 ];
 
 fn prepared(scene: &str, changes: &[&str]) -> Run {

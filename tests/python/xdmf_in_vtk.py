@@ -28,15 +28,22 @@ def check(path):
             grid = reader.GetOutputDataObject(0)
             while isinstance(grid, vtk.vtkMultiBlockDataSet):
                 grid = grid.GetBlock(0)
-            nodes, cells = len(bulk["coordinates"]), len(bulk["cells"])
+            (nodes, axes), (cells, corners) = bulk["coordinates"].shape, bulk["cells"].shape
             assert (grid.GetNumberOfPoints(), grid.GetNumberOfCells()) == (nodes, cells)
-            assert grid.GetCellType(0) == vtk.VTK_QUAD
-            assert np.array_equal(vtk_to_numpy(grid.GetPoints().GetData())[:, :2], bulk["coordinates"][:])
-            assert np.array_equal(vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4), bulk["cells"][:])
+            kind = {(2, 4): vtk.VTK_QUAD, (3, 8): vtk.VTK_HEXAHEDRON, (3, 4): vtk.VTK_TETRA}[axes, corners]
+            assert {grid.GetCellType(cell) for cell in range(cells)} == {kind}
+            assert np.array_equal(vtk_to_numpy(grid.GetPoints().GetData())[:, :axes], bulk["coordinates"][:])
+            connectivity = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, corners)
+            assert np.array_equal(connectivity, bulk["cells"][:])
+            if axes == 3:
+                volumes = vtk.vtkCellSizeFilter()
+                volumes.SetInputData(grid)
+                volumes.Update()
+                assert np.all(vtk_to_numpy(volumes.GetOutput().GetCellData().GetArray("Volume")) > 0.0)
             data = grid.GetPointData()
             displacement = vtk_to_numpy(data.GetArray("displacement"))
-            assert displacement.shape == (nodes, 3) and np.all(displacement[:, 2] == 0.0)
-            assert np.array_equal(displacement[:, :2], bulk["displacement"][frame]), frame
+            assert displacement.shape == (nodes, 3) and np.all(displacement[:, axes:] == 0.0)
+            assert np.array_equal(displacement[:, :axes], bulk["displacement"][frame]), frame
             for component, name in enumerate(bulk["stress"].attrs["components"]):
                 stress = vtk_to_numpy(data.GetArray(f"stress_{name}"))
                 assert np.array_equal(stress.ravel(), bulk["stress"][frame, :, component]), (frame, name)
@@ -53,8 +60,9 @@ def check_pyvista(path):
             grid = reader.read()
             while isinstance(grid, pyvista.MultiBlock):
                 grid = grid[0]
-            assert np.array_equal(grid["displacement"][:, :2], file["bulk/displacement"][frame])
-            assert np.array_equal(grid["stress_xz"].ravel(), file["bulk/stress"][frame, :, 3])
+            axes = file["bulk/coordinates"].shape[1]
+            assert np.array_equal(grid["displacement"][:, :axes], file["bulk/displacement"][frame])
+            assert np.array_equal(grid["stress_xz"].ravel(), file["bulk/stress"][frame, :, -1])
     print(f"{path}: all fields in pyvista {pyvista.__version__}")
 
 
@@ -63,7 +71,7 @@ def check_meshio(path):
     with meshio.xdmf.TimeSeriesReader(path) as reader, h5py.File(path.removesuffix(".xdmf") + ".h5", "r") as file:
         points, (cells,) = reader.read_points_cells()
         assert np.array_equal(points, file["bulk/coordinates"][:])
-        assert cells.type == "quad" and np.array_equal(cells.data, file["bulk/cells"][:])
+        assert cells.type in ("quad", "hexahedron", "tetra") and np.array_equal(cells.data, file["bulk/cells"][:])
     print(f"{path}: the mesh in meshio {meshio.__version__}")
 
 
