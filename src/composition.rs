@@ -37,6 +37,7 @@ use crate::solve::{
     MAX_NEWTON, Monolithic, PeriodicColumn, Relaxation, Relaxations, Remembering, Response, Solid, Sparse,
     TransientProblem,
 };
+use crate::wear::{self, Wear};
 
 use body::Materials;
 pub use body::Meshed;
@@ -165,7 +166,8 @@ fn assembled<const D: usize>(
 ) -> Result<(Strategy, Vec<Phase>)> {
     let materials = Materials::new(scene);
     let friction = scene.friction.as_ref().map(friction).transpose()?;
-    let laws = Laws { profile: Box::new(surface), penalty: body::penalty(scene, &source), friction };
+    let (penalty, wear) = (body::penalty(scene, &source), scene.wear.map(wearing));
+    let laws = Laws { profile: Box::new(surface), penalty, friction, wear };
     let mut interface = Interface::new(source.face(), laws, quadrature(scene.contact.quadrature));
     let clearance = clearance(scene, &mut interface)?;
     let solid = Solid { source, dilatation: body::dilatation(scene), regions: materials.regions.clone() };
@@ -326,6 +328,18 @@ fn friction(friction: &scene::Friction) -> Result<Box<dyn Law>> {
         scene::Law::CoulombElasticSlip { elastic_slip } => Box::new(ElasticSlip { strength, elastic_slip }),
         scene::Law::Coulomb => Box::new(Coulomb { strength }),
     })
+}
+
+fn wearing(wear: scene::Wear) -> Wear {
+    let law = match wear.law {
+        scene::WearLaw::Archard => wear::Law::Archard,
+        scene::WearLaw::Energy => wear::Law::Energy,
+    };
+    let of = match wear.of {
+        scene::Wearing::Body => wear::Part::Body,
+        scene::Wearing::Indenter => wear::Part::Indenter,
+    };
+    Wear { of, law, coefficient: wear.coefficient }
 }
 
 /// Of each direction that there is; the tangential one is the same along x and y.

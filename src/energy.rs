@@ -1,7 +1,7 @@
 //! The energy balance of a run.
 //!
 //! ```text
-//! work of what moves the indenter = stored + dissipated in the arms + dissipated by friction + penalty + mounts + imbalance
+//! work of what moves the indenter = stored + dissipated in the arms + dissipated by friction + worn off + penalty + mounts + imbalance
 //! ```
 //!
 //! Each term is computed for itself, so that the imbalance says how well the steps resolve the history. The contact forces
@@ -24,6 +24,8 @@ pub struct Energy {
     pub friction_dissipation: f64,
     /// Stored in the penalty.
     pub penalty: f64,
+    /// What the pressure did on what it wore off: integral of p dh_w.
+    pub wear: f64,
     /// In the mounts.
     pub mounts: MountEnergy,
     /// What the others leave over of the work.
@@ -59,6 +61,8 @@ pub struct FaceEnergy {
     pub friction: f64,
     /// In the penalty.
     pub penalty: f64,
+    /// What the pressure did on what it wore off since t = 0.
+    pub wear: f64,
     /// In the mounts.
     pub mounts: MountEnergy,
 }
@@ -66,7 +70,7 @@ pub struct FaceEnergy {
 impl Energy {
     /// The balance of the two shares.
     pub fn new(face: FaceEnergy, body: BodyEnergy) -> Self {
-        let FaceEnergy { work, friction, penalty, mounts } = face;
+        let FaceEnergy { work, friction, penalty, wear, mounts } = face;
         let MountEnergy { spring, dashpot, kinetic } = mounts;
         let BodyEnergy { stored, dissipated } = body;
         Self {
@@ -75,8 +79,9 @@ impl Energy {
             viscoelastic_dissipation: dissipated,
             friction_dissipation: friction,
             penalty,
+            wear,
             mounts,
-            imbalance: work - stored - dissipated - friction - penalty - spring - dashpot - kinetic,
+            imbalance: work - stored - dissipated - friction - penalty - wear - spring - dashpot - kinetic,
         }
     }
 }

@@ -11,6 +11,7 @@ mod exchange;
 mod oscillation;
 mod points;
 mod state;
+mod worn;
 
 use nalgebra::{SVector, Vector2};
 
@@ -21,11 +22,13 @@ use crate::loading::{DIRECTIONS, Placement};
 use crate::mesh;
 use crate::profile::{Height, Surface};
 use crate::snapshot::Snapshot;
+use crate::wear::{Wear, Worn};
 
 pub use displaced::{Residual, Tangent, Trial};
 pub use exchange::Exchange;
 pub use points::{Point, Points};
 pub use state::State;
+pub use worn::WornFields;
 
 /// The laws of the contact.
 pub struct Laws {
@@ -35,6 +38,8 @@ pub struct Laws {
     pub penalty: Option<f64>,
     /// None = frictionless.
     pub friction: Option<Box<dyn Law>>,
+    /// None = nothing wears.
+    pub wear: Option<Wear>,
 }
 
 /// The MPJR interface elements of a contact face.
@@ -47,6 +52,8 @@ pub struct Interface<const D: usize> {
     /// The accepted state of each point, and where the indenter was.
     accepted: Vec<State<D>>,
     place: Placement,
+    /// What has worn off the indenter, where it wears.
+    worn: Option<Worn>,
     /// Evaluations of the tangential law while solving.
     tangential_laws: usize,
 }
@@ -71,6 +78,8 @@ pub struct Totals {
     pub stuck_slip: f64,
     /// How much the tractions oscillate from node to node; 1 = nothing but a checkerboard.
     pub traction_oscillation: f64,
+    /// integral of the worn depth, m^2 (m^3 in space).
+    pub worn_volume: f64,
 }
 
 /// Fields at the face's nodes. Under Gauss quadrature, the mean of the points that share a node, by their shares; the gap is
@@ -85,6 +94,8 @@ pub struct Fields {
     pub gap: Vec<f64>,
     /// w, m/s
     pub slip_rate: Vec<Vector2<f64>>,
+    /// Only where something wears.
+    pub worn: Option<WornFields>,
 }
 
 /// What is asked of a contact face at its accepted state, whatever the dimension.
@@ -120,7 +131,8 @@ impl<const D: usize> Interface<D> {
         let points = Points::new(&face, quadrature);
         let pairs = if points.share_nodes() { face.pairs() } else { Vec::new() };
         let accepted = vec![State::default(); points.count()];
-        Self { face, laws, points, pairs, accepted, place: Placement::default(), tangential_laws: 0 }
+        let worn = laws.worn(face.grid.as_ref());
+        Self { face, laws, points, pairs, accepted, place: Placement::default(), worn, tangential_laws: 0 }
     }
 
     /// The face.
@@ -175,7 +187,7 @@ impl<const D: usize> Interface<D> {
     /// # Errors
     /// A domain error where the profile is not known.
     pub fn place(&mut self, placement: Placement) -> Result<()> {
-        self.points.place(self.laws.profile.as_ref(), placement)
+        self.points.place(&self.laws.surface(self.worn.as_ref()), placement)
     }
 
     /// The profile over each point with the indenter at another place, `sliding`, m.
@@ -183,7 +195,7 @@ impl<const D: usize> Interface<D> {
     /// # Errors
     /// As for [`Self::place`].
     pub fn heights_at(&self, sliding: Vector2<f64>) -> Result<Vec<Height>> {
-        self.points.heights_at(self.laws.profile.as_ref(), sliding)
+        self.points.heights_at(&self.laws.surface(self.worn.as_ref()), sliding)
     }
 
     /// The vertical clearance over a point where the indenter was placed last, c, m.
@@ -198,6 +210,7 @@ impl<const D: usize> Interface<D> {
     pub fn commit(&mut self, placement: Placement, states: Vec<State<D>>) -> Result<()> {
         self.place(placement)?;
         self.check_friction(placement.dt, &states)?;
+        self.wear_off(placement, &states);
         (self.accepted, self.place) = (states, Placement { dt: 0.0, supports: [None; DIRECTIONS], ..placement });
         Ok(())
     }
@@ -236,6 +249,7 @@ impl<const D: usize> Interface<D> {
                 totals.stuck_slip = totals.stuck_slip.max(state.stuck.norm());
             }
         }
+        totals.worn_volume = self.worn_volume();
         totals.contact_fraction = contact / length;
         totals.stick_fraction = if contact > 0.0 { stick / contact } else { 0.0 };
         let Fields { pressure, shear, .. } = self.fields(1.0);
@@ -260,7 +274,7 @@ impl<const D: usize> Interface<D> {
         let along = |axis: usize| {
             let side = |steps: f64| {
                 let beside = place + Vector2::ith(axis, steps * BESIDE * size);
-                self.laws.profile.at(beside).map_or(here[axis], |height| height.gradient[axis])
+                self.laws.surface(self.worn.as_ref()).at(beside).map_or(here[axis], |height| height.gradient[axis])
             };
             let (left, right) = (side(-1.0), side(1.0));
             let jump = (right - left).abs();
@@ -281,7 +295,13 @@ impl<const D: usize> Interface<D> {
     pub fn fields(&self, dt: f64) -> Fields {
         let nodes = self.face.count();
         let (none, open) = (vec![Vector2::zeros(); nodes], vec![f64::INFINITY; nodes]);
-        let mut fields = Fields { pressure: vec![0.0; nodes], shear: none.clone(), gap: open, slip_rate: none };
+        let mut fields = Fields {
+            pressure: vec![0.0; nodes],
+            shear: none.clone(),
+            gap: open,
+            slip_rate: none,
+            worn: self.worn_fields(),
+        };
         let mut length = vec![0.0; nodes];
         for (i, point) in self.points.all().iter().enumerate() {
             self.points.shares(i).iter().for_each(|&(node, share)| length[node] += share * point.weight);
@@ -306,6 +326,7 @@ impl<const D: usize> Interface<D> {
         let Placement { approach, sliding, sliding_rate, approach_rate, far, .. } = self.place;
         snapshot.put("face", vec![approach, sliding.x, sliding.y, sliding_rate.x, sliding_rate.y, approach_rate]);
         snapshot.put("mounts", far.to_vec());
+        self.save_worn(snapshot);
     }
 
     /// Takes the accepted state from a snapshot.
@@ -317,7 +338,7 @@ impl<const D: usize> Interface<D> {
         let (sliding, sliding_rate) = (Vector2::new(x, y), Vector2::new(v_x, v_y));
         let far = snapshot.numbers("mounts")?;
         self.place = Placement { approach, sliding, sliding_rate, approach_rate, far, ..Placement::default() };
-        Ok(())
+        self.restore_worn(snapshot)
     }
 }
 

@@ -14,7 +14,7 @@
 //! | [`output`] | history, fields, XDMF, checkpoints |
 //! | [`interface`], [`bulk`] | points of the contact with their laws and states; forces of a body with memory |
 //! | [`energy`], [`snapshot`], [`loading`] | the balance; the state as lists; where the indenter is |
-//! | [`friction`], [`profile`], [`rheology`], [`element`], [`mesh`] | pure laws, numbers in and numbers out; cells |
+//! | [`friction`], [`wear`], [`profile`], [`rheology`], [`element`], [`mesh`] | pure laws, numbers in and numbers out; cells |
 //! | [`expression`], [`table`], [`heightmap`], [`input`], [`checksum`] | formulas and files of numbers |
 //! | [`oracle`] | closed forms and Fourier solutions that results are compared with |
 //! | [`petsc`], [`parallel`], [`memory`], [`error`] | thin safe wrappers, the only `unsafe` code; one outcome for all ranks |
@@ -53,3 +53,4 @@ pub mod study;
 pub mod table;
 pub mod verify;
 pub mod warnings;
+pub mod wear;

@@ -7,6 +7,7 @@ use nalgebra::Vector2;
 
 use crate::composition::{self, Compliances, Outline, Parts, Problem};
 use crate::error::{Error, Result};
+use crate::interface::WornFields;
 use crate::output::{Across, HistoryRow, InterfaceFrame};
 use crate::scene::Scene;
 use crate::solve::{BulkFields, Counts, Driver, Observer, Report};
@@ -98,6 +99,7 @@ pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
         },
         mount_normal: placement.far[0],
         mount_tangential: placement.far[1],
+        worn_volume: totals.worn_volume,
         energy,
     };
     row.not_finite().map_or(Ok(row), |name| Err(not_finite("history", name, report.time)))
@@ -112,6 +114,7 @@ pub fn frame(report: &mut Report<'_>) -> Result<InterfaceFrame> {
         vectors.iter().flat_map(|vector| vector.iter().take(axes - 1)).copied().collect()
     };
     let component = |i: usize| contact.displacement.iter().skip(i).step_by(axes).copied().collect();
+    let WornFields { depth, profile } = fields.worn.unwrap_or_default();
     let [displacement_x, displacement_z] = if axes == 2 { [component(0), component(1)] } else { Default::default() };
     let frame = InterfaceFrame {
         time: report.time,
@@ -122,6 +125,8 @@ pub fn frame(report: &mut Report<'_>) -> Result<InterfaceFrame> {
         displacement_x,
         displacement_z,
         displacement: if axes == 3 { contact.displacement.to_vec() } else { Vec::new() },
+        worn_depth: depth,
+        worn_profile: profile.unwrap_or_default(),
     };
     frame.not_finite().map_or(Ok(()), |name| Err(not_finite("interface", name, report.time)))?;
     Ok(frame)

@@ -108,6 +108,8 @@ fn layout_is_that_of_the_contract() {
         ("contact_fraction stick_fraction traction_oscillation", "1"),
         ("energy/external_work energy/stored energy/viscoelastic_dissipation energy/friction_dissipation", "J/m"),
         ("energy/penalty energy/mount_spring energy/mount_dashpot energy/kinetic energy/imbalance", "J/m"),
+        ("energy/wear", "J/m"),
+        ("worn_volume", "m^2"),
     ] {
         expected.extend(names.split(' ').map(|name| (format!("/history/{name}"), vec![10], float.clone(), units)));
     }
@@ -116,7 +118,7 @@ fn layout_is_that_of_the_contract() {
     }
     expected.push(("/interface/x".into(), vec![FACE], float.clone(), "m"));
     expected.push(("/interface/time".into(), vec![4], float.clone(), "s"));
-    for (name, units) in sample::FIELDS.iter().zip(["Pa", "Pa", "m", "m/s", "m", "m"]) {
+    for (name, units) in sample::FIELDS.iter().zip(["Pa", "Pa", "m", "m/s", "m", "m", "m", "m"]) {
         expected.push((format!("/interface/{name}"), vec![4, FACE], float.clone(), units));
     }
     expected.push(("/bulk/coordinates".into(), vec![35, 2], float.clone(), "m"));

@@ -153,6 +153,8 @@ fn a_run_has_eight_figures() {
     assert!(text.contains("plain.h5: the figure stress cannot be drawn: no bulk fields") && code == 4, "{text}");
     let (text, _) = fail(at, &["plot", "plain.h5", "energy"]);
     assert!(text.contains("the figure energy cannot be drawn: no energies (the scene's output.energy"), "{text}");
+    let (text, _) = fail(at, &["plot", "plain.h5", "wear"]);
+    assert!(text.contains("the figure wear cannot be drawn: no wear (the scene's [wear] asks for it)"), "{text}");
     let (text, code) = fail(at, &["plot", "plain.h5", "figure7"]);
     assert!(
         text.contains("no figure figure7; a result file has: history, reactions, energy, tractions") && code == 2,

@@ -317,6 +317,7 @@ impl Random {
             contact: Contact { penalty, quadrature },
             friction: self.of(&[None, Some(friction)]),
             mount: None,
+            wear: None,
             output: Output {
                 interface_every: self.below(3) as usize,
                 bulk_at: if self.below(2) == 0 { vec![] } else { ends.chain(times).collect() },

@@ -156,6 +156,8 @@ fn a_signal_to_one_rank_stops_all() {
         (ratio(), "", 0.0, &gauss),
         (ratio(), "", 0.0, &mounted),
         (ratio(), "", 0.0, &["--set", "phase.slide.normal_force=0.3"]),
+        (bulk(), "", 0.0, &["--set", "wear={of=\"body\",law=\"energy\",coefficient=1e-3}"]),
+        (ratio(), "", 0.0, &["--set", "wear={of=\"indenter\",law=\"archard\",coefficient=1e-3}"]),
         (bulk(), "tolerance = 1e-13\nstrategy = \"monolithic\"", 1e-10, &[]),
     ] {
         let scene = scene(directory.path(), 40, &material, solver);

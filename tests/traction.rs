@@ -18,6 +18,7 @@ use mpjr::profile::Height;
 use mpjr::solve::traction::{
     Border, Factor, Held, Laws, Moduli, Operator, Outcome, Site, against, product, settle, shift,
 };
+use mpjr::wear::{Part, Wear};
 use nalgebra::{DMatrix, SMatrix, SVector, Vector2};
 
 const CASES: &[Case] = &[
@@ -96,6 +97,12 @@ fn excesses<const D: usize>(outcome: &Outcome<D>) -> Vec<SVector<f64, D>> {
     outcome.answers.iter().map(|answer| answer.excess).collect()
 }
 
+/// No wear, and wear so quick that the depth is a third of the slip times the pressure.
+fn worn() -> [Option<Wear>; 3] {
+    let wear = |law| Wear { of: Part::Body, law, coefficient: 0.3 };
+    [None, Some(wear(mpjr::wear::Law::Archard)), Some(wear(mpjr::wear::Law::Energy))]
+}
+
 fn all_laws(check: impl Fn(Laws<'_>)) {
     // Weakens with the rate and with the distance, by less than any rho of these tests; strengthens with the pressure up to a limit.
     let formula = Expression::parse("0.38 + 0.01*exp(-v/2) + 0.01*exp(-s) + 0.02*p", &VARIABLES).unwrap();
@@ -109,8 +116,8 @@ fn all_laws(check: impl Fn(Laws<'_>)) {
     });
     let friction = std::iter::once(None).chain(laws.as_flattened().iter().map(|law| Some(&**law)));
     for friction in friction {
-        for penalty in [None, Some(2.0)] {
-            check(Laws { penalty, friction, dt: 0.5, resolution: 0.0, held: Held::default() });
+        for (penalty, wear) in [None, Some(2.0)].into_iter().flat_map(|penalty| worn().map(|wear| (penalty, wear))) {
+            check(Laws { penalty, friction, wear, dt: 0.5, resolution: 0.0, held: Held::default() });
         }
     }
 }
@@ -242,7 +249,8 @@ fn solution<const D: usize>() {
 /// A point that is held along the face answers with what its law says of the slip, or takes any shear that Coulomb allows.
 fn a_held_point_has_the_shear_of_its_slip(_: &SimpleCommunicator, _: &Path) {
     let law = Coulomb { strength: Strength::constant(0.5) };
-    let laws = Laws { penalty: Some(4.0), friction: Some(&law), dt: 1.0, resolution: 0.0, held: Held::default() };
+    let laws =
+        Laws { penalty: Some(4.0), friction: Some(&law), wear: None, dt: 1.0, resolution: 0.0, held: Held::default() };
     let site = |slip: f64| Site {
         normal: SVector::from([0.0, 1.0]),
         weight: 1.0,

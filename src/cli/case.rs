@@ -19,7 +19,7 @@ use crate::output::{
 };
 use crate::parallel::agree;
 use crate::petsc::Session;
-use crate::scene::Scene;
+use crate::scene::{self, Scene, Wearing};
 use crate::solve::Driver;
 use crate::warnings::{Doubts, Warning};
 
@@ -171,7 +171,13 @@ fn open(
 /// The columns that the history of a scene has besides those that all have.
 pub fn extra(scene: &Scene) -> Extra {
     let mounts = scene.mount.map_or([false; 2], |mount| mount.directions().map(|end| end.is_some()));
-    Extra { energy: scene.output.energy, mounts }
+    let wears = |wear: scene::Wear| wear.of == Wearing::Indenter;
+    Extra {
+        energy: scene.output.energy,
+        mounts,
+        wear: scene.wear.is_some(),
+        worn_profile: scene.wear.is_some_and(wears),
+    }
 }
 
 fn plan(scene: &Scene, mesh: &Meshed, phases: &[Phase]) -> Plan {

@@ -10,8 +10,8 @@ use crate::energy::{Energy, MountEnergy};
 use crate::output::Status;
 use crate::petsc;
 use crate::scene::{
-    Coefficient, Friction, Law, Penalty, PoissonRule, Quadrature, Scene, Sides, Span, Strategy, added_compliance,
-    shortest_step,
+    Coefficient, Friction, Law, Penalty, PoissonRule, Quadrature, Scene, Sides, Span, Strategy, Wear, WearLaw, Wearing,
+    added_compliance, shortest_step,
 };
 use crate::solve::{Counts, Work};
 
@@ -42,6 +42,10 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
         let names = ["normal", "tangential"].into_iter().zip(mount.directions());
         let names: Vec<&str> = names.filter_map(|(name, end)| end.map(|_| name)).collect();
         yes.push(format!("mount: {}", names.join(" and ")));
+    }
+    match &scene.wear {
+        Some(wear) => yes.push(wear_law(wear)),
+        None => no.push("wear".to_owned()),
     }
     yes.push(format!(
         "contact: {}, {} quadrature",
@@ -75,6 +79,19 @@ fn friction_law(friction: &Friction) -> String {
         Law::Coulomb => "Coulomb's law itself".to_owned(),
     };
     format!("friction: f = {coefficient}{limit}, {turns}")
+}
+
+/// What wears, and by which law.
+fn wear_law(&Wear { of, law, coefficient }: &Wear) -> String {
+    let of = match of {
+        Wearing::Body => "body",
+        Wearing::Indenter => "indenter",
+    };
+    let law = match law {
+        WearLaw::Archard => "p |w| (Archard)",
+        WearLaw::Energy => "q.w (energy)",
+    };
+    format!("wear of the {of}: rate = {coefficient:e} 1/Pa {law}, implicit")
 }
 
 /// The penalty, and how much it softens a layer.
@@ -235,8 +252,17 @@ pub fn outcome(scene: &Scene, done: &Done) -> String {
 
 /// The energy balance as a sum.
 fn balance(energy: &Energy) -> String {
-    let Energy { external_work, stored, viscoelastic_dissipation, friction_dissipation, penalty, mounts, imbalance } =
-        energy;
+    let Energy {
+        external_work,
+        stored,
+        viscoelastic_dissipation,
+        friction_dissipation,
+        penalty,
+        wear,
+        mounts,
+        imbalance,
+    } = energy;
+    let worn = if *wear == 0.0 { String::new() } else { format!(" + wear {wear:.3e}") };
     let MountEnergy { spring, dashpot, kinetic } = mounts;
     let held = match *mounts == MountEnergy::default() {
         true => String::new(),
@@ -244,7 +270,7 @@ fn balance(energy: &Energy) -> String {
     };
     format!(
         "work {external_work:.3e} = stored {stored:.3e} + arms {viscoelastic_dissipation:.3e} + friction \
-         {friction_dissipation:.3e}\n{:15}+ penalty {penalty:.3e}{held} + imbalance {imbalance:.3e} J/m",
+         {friction_dissipation:.3e}\n{:15}+ penalty {penalty:.3e}{worn}{held} + imbalance {imbalance:.3e} J/m",
         ""
     )
 }

@@ -7,7 +7,11 @@
 //! a mount's far end:     its force times what that moves, instead of the part of the indenter that it holds
 //! friction:              integral of q.d, d the slip that dissipates; at least 0
 //! penalty:               integral of 1/2 p o, and what elastic slip has stored
+//! wear:                  integral of p dh_w
 //! ```
+//!
+//! What an indenter wears at the points of the face is put down at nodes of its own, so that the profile over a point is then another by
+//! a little: that counts as wear of the next step.
 //!
 //! dh, the change of the profile over the point, rather than its slope: it serves kinks and long steps. No law lets q work against
 //! the slip that it ends. Where the old q does, by more than the new one works along it, q has turned within the step, and their
@@ -27,7 +31,7 @@ pub struct Exchange {
     energy: FaceEnergy,
     /// Stored by elastic slip since t = 0, J/m.
     elastic: f64,
-    /// h over each point, m.
+    /// h over each point, with what the last step has worn off the indenter there, m.
     heights: Vec<f64>,
 }
 
@@ -50,11 +54,12 @@ impl Exchange {
         (place, mounts): (Placement, &[Option<Mount>; DIRECTIONS]),
         states: &[State<D>],
     ) -> Result<()> {
+        let settled = self.settle(interface)?;
         interface.place(place)?;
         let dt = place.dt;
         let way = place.way();
         let (mut penalty, mut work, mut shears, mut pressing) = (0.0, 0.0, SVector::<f64, D>::zeros(), 0.0);
-        let heights = heights(interface);
+        let mut heights = heights(interface);
         for (i, (before, after)) in interface.states().iter().zip(states).enumerate() {
             let point = &interface.points().all()[i];
             let opened = before.overlap.min(0.0) - after.overlap.min(0.0);
@@ -71,6 +76,12 @@ impl Exchange {
             pressing += point.weight * (pressure * point.normal[D - 1] - shear[D - 1]);
             shears += shear * point.weight;
             penalty += 0.5 * point.weight * after.pressure * after.overlap;
+            let worn = after.worn - before.worn;
+            self.energy.wear += point.weight * pressure * worn;
+            if let Some(settled) = &settled {
+                self.energy.wear += point.weight * pressure * settled[i];
+                heights[i] += worn;
+            }
         }
         let normal = pressing * place.approach_rate * dt;
         // What the profile's slope meets goes with the first direction along the face: that of a plane, or of both mounts in space.
@@ -79,6 +90,18 @@ impl Exchange {
         self.heights = heights;
         self.energy.penalty = penalty + self.elastic;
         Ok(())
+    }
+
+    /// By how much the profile over each point is higher than what was worn off there says, m; none where it stays as it is.
+    fn settle<const D: usize>(&mut self, interface: &mut Interface<D>) -> Result<Option<Vec<f64>>> {
+        if !interface.reshapes() {
+            return Ok(None);
+        }
+        interface.place(interface.placement())?;
+        let now = heights(interface);
+        let higher = now.iter().zip(&self.heights).map(|(now, before)| now - before).collect();
+        self.heights = now;
+        Ok(Some(higher))
     }
 
     /// Adds the work of a step in each direction: of the indenter, or of what moves its mount.
@@ -100,16 +123,17 @@ impl Exchange {
 
     /// Adds the account to a snapshot.
     pub fn save(&self, snapshot: &mut Snapshot) {
-        let Self { energy: FaceEnergy { work, friction, penalty, mounts }, elastic, .. } = self;
+        let Self { energy: FaceEnergy { work, friction, penalty, wear, mounts }, elastic, .. } = self;
         let MountEnergy { spring, dashpot, kinetic } = mounts;
-        snapshot.put("face-energy", vec![*work, *friction, *penalty, *elastic, *spring, *dashpot, *kinetic]);
+        let energies = [work, friction, penalty, elastic, spring, dashpot, kinetic, wear];
+        snapshot.put("face-energy", energies.map(|energy| *energy).to_vec());
         snapshot.put("face-heights", self.heights.clone());
     }
 
     /// Takes the account from a snapshot.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
-        let [work, friction, penalty, elastic, spring, dashpot, kinetic] = snapshot.numbers("face-energy")?;
-        self.energy = FaceEnergy { work, friction, penalty, mounts: MountEnergy { spring, dashpot, kinetic } };
+        let [work, friction, penalty, elastic, spring, dashpot, kinetic, wear] = snapshot.numbers("face-energy")?;
+        self.energy = FaceEnergy { work, friction, penalty, wear, mounts: MountEnergy { spring, dashpot, kinetic } };
         self.elastic = elastic;
         snapshot.fill("face-heights", &mut self.heights)
     }

@@ -111,6 +111,11 @@ impl<const D: usize> Points<D> {
         Ok(())
     }
 
+    /// The profile is another one.
+    pub fn forget(&mut self) {
+        self.placed = None;
+    }
+
     /// The profile at the points with the indenter at `sliding`, m.
     ///
     /// # Errors

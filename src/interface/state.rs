@@ -19,6 +19,8 @@ pub struct State<const D: usize> {
     pub stuck: SVector<f64, D>,
     /// The slip for good of all steps in contact, m.
     pub slid: f64,
+    /// What has worn off over the point, m, of the body or of the indenter.
+    pub worn: f64,
     /// Whether it sticks.
     pub sticks: bool,
 }
@@ -26,13 +28,13 @@ pub struct State<const D: usize> {
 impl<const D: usize> Default for State<D> {
     fn default() -> Self {
         let none = SVector::zeros();
-        Self { pressure: 0.0, shear: none, overlap: 0.0, slip: none, stuck: none, slid: 0.0, sticks: false }
+        Self { pressure: 0.0, shear: none, overlap: 0.0, slip: none, stuck: none, slid: 0.0, worn: 0.0, sticks: false }
     }
 }
 
 impl<const D: usize> State<D> {
     /// How many numbers it is in a list.
-    pub const NUMBERS: usize = 4 + 3 * D;
+    pub const NUMBERS: usize = 5 + 3 * D;
 
     /// The elastic part of the slip that the next step begins with, m.
     pub fn elastic(&self, law: &dyn Law) -> SVector<f64, D> {
@@ -66,7 +68,7 @@ impl<const D: usize> State<D> {
 
     /// As numbers.
     pub fn write(&self, list: &mut Vec<f64>) {
-        list.extend([self.pressure, self.overlap, self.slid, f64::from(u8::from(self.sticks))]);
+        list.extend([self.pressure, self.overlap, self.slid, self.worn, f64::from(u8::from(self.sticks))]);
         for vector in [&self.shear, &self.slip, &self.stuck] {
             list.extend(vector.iter());
         }
@@ -74,12 +76,13 @@ impl<const D: usize> State<D> {
 
     /// From [`Self::NUMBERS`] numbers.
     pub fn read(list: &[f64]) -> Self {
-        let vector = |i: usize| SVector::from_column_slice(&list[4 + i * D..][..D]);
+        let vector = |i: usize| SVector::from_column_slice(&list[5 + i * D..][..D]);
         Self {
             pressure: list[0],
             overlap: list[1],
             slid: list[2],
-            sticks: list[3] != 0.0,
+            worn: list[3],
+            sticks: list[4] != 0.0,
             shear: vector(0),
             slip: vector(1),
             stuck: vector(2),

@@ -38,6 +38,8 @@ pub struct HistoryRow {
     pub mount_normal: f64,
     /// That of the tangential one.
     pub mount_tangential: f64,
+    /// What has worn off, m^2 (m^3 in space); recorded where something wears.
+    pub worn_volume: f64,
     /// The energy balance; recorded where it is asked for.
     pub energy: Energy,
 }
@@ -75,6 +77,10 @@ pub struct InterfaceFrame {
     pub displacement_z: Vec<f64>,
     /// In space: x, y and z of the displacement of the face, m.
     pub displacement: Vec<f64>,
+    /// Where something wears: the depth that has worn off, m; of an indenter at the same x in its own frame.
+    pub worn_depth: Vec<f64>,
+    /// Where the indenter wears: its profile, m, at x in its own frame.
+    pub worn_profile: Vec<f64>,
 }
 
 /// Where a history column has its number in a row; also the type it has in the file (float64 or int64).
@@ -120,11 +126,15 @@ pub struct Extra {
     pub energy: bool,
     /// The far ends of the mounts, normal and tangential, and what they add to the balance.
     pub mounts: [bool; 2],
+    /// The worn volume and depth, and what wear takes of the balance.
+    pub wear: bool,
+    /// The profile of an indenter that wears.
+    pub worn_profile: bool,
 }
 
 impl Extra {
     /// What all rows can have.
-    pub const ALL: Self = Self { energy: true, mounts: [true; 2] };
+    pub const ALL: Self = Self { energy: true, mounts: [true; 2], wear: true, worn_profile: true };
 }
 
 /// The columns of `/history`. `time` is the last: the lengths reach the file in this order (see [`super`]).
@@ -171,12 +181,22 @@ const MOUNT_ENERGY: &[Column] = &[
     real("energy/kinetic", "J/m", "kinetic energy of the masses of the mounts", |r| &mut r.energy.mounts.kinetic),
 ];
 
+/// What has worn off.
+const WORN: Column = real("worn_volume", "m^2", "volume that has worn off, per unit thickness", |r| &mut r.worn_volume);
+
+/// What wear takes of the energy balance.
+const WEAR_ENERGY: Column =
+    real("energy/wear", "J/m", "work of the pressure on what it wore off since t = 0", |r| &mut r.energy.wear);
+
 /// All history columns of a run, `time` last.
-pub(super) fn history(Extra { energy, mounts }: Extra) -> impl Iterator<Item = &'static Column> {
+pub(super) fn history(Extra { energy, mounts, wear, .. }: Extra) -> impl Iterator<Item = &'static Column> {
     let mounted = energy && mounts != [false; 2];
     let ends = MOUNTS.iter().zip(mounts).filter_map(|(column, there)| there.then_some(column));
     let energies = ENERGY.iter().filter(move |_| energy).chain(MOUNT_ENERGY.iter().filter(move |_| mounted));
-    energies.chain(ends).chain(HISTORY)
+    let worn = [(&WEAR_ENERGY, energy && wear), (&WORN, wear)]
+        .into_iter()
+        .filter_map(|(column, there)| there.then_some(column));
+    energies.chain(worn).chain(ends).chain(HISTORY)
 }
 
 /// Whether a column has a component for each direction of the face.
@@ -190,6 +210,7 @@ pub(super) fn in_space(units: &'static str, long_name: &str) -> (&'static str, S
         "N/m" => "N",
         "J/m" => "J",
         "W/m" => "W",
+        "m^2" => "m^3",
         other => other,
     };
     (units, long_name.replace(", per unit thickness", "").replace(" per unit thickness", "").replace("+x", "+x and +y"))
@@ -215,7 +236,7 @@ impl InterfaceFrame {
     /// The first field with a number that is not finite.
     pub fn not_finite(&self) -> Option<&'static str> {
         let bad = |field: &&Field| (field.values)(self).iter().any(|value| !value.is_finite());
-        interface(2).chain(IN_SPACE).find(bad).map(|field| field.name)
+        interface(2, Extra::ALL).chain(IN_SPACE).find(bad).map(|field| field.name)
     }
 }
 
@@ -303,9 +324,27 @@ const IN_PLANE: &[Field] = &[
 const IN_SPACE: &[Field] =
     &[field("displacement", "m", "displacement of the contact face", (Components::Axes, |f| &f.displacement))];
 
+/// Where something wears.
+const WORN_DEPTH: Field = field(
+    "worn_depth",
+    "m",
+    "depth that has worn off; of an indenter at this place of its own frame",
+    (Components::Scalar, |f| &f.worn_depth),
+);
+
+/// Where the indenter wears.
+const WORN_PROFILE: Field = field(
+    "worn_profile",
+    "m",
+    "elevation of the worn indenter at this place of its own frame",
+    (Components::Scalar, |f| &f.worn_profile),
+);
+
 /// The fields of the face of a body of so many axes.
-pub(super) fn interface(axes: usize) -> impl Iterator<Item = &'static Field> {
-    INTERFACE.iter().chain(if axes == 3 { IN_SPACE } else { IN_PLANE })
+pub(super) fn interface(axes: usize, extra: Extra) -> impl Iterator<Item = &'static Field> {
+    let worn = [(&WORN_DEPTH, extra.wear), (&WORN_PROFILE, extra.worn_profile)];
+    let worn = worn.into_iter().filter_map(|(field, there)| there.then_some(field));
+    INTERFACE.iter().chain(if axes == 3 { IN_SPACE } else { IN_PLANE }).chain(worn)
 }
 
 /// A nodal field of the bulk, j x nodes x components.

@@ -93,7 +93,8 @@ impl Results {
     /// Which columns its history has besides those that all have.
     pub fn extra(&self) -> Extra {
         let mounts = ["mount_normal", "mount_tangential"].map(|column| self.has(&format!("history/{column}")));
-        Extra { energy: self.has("history/energy/stored"), mounts }
+        let (wear, worn_profile) = (self.has("history/worn_volume"), self.has("interface/worn_profile"));
+        Extra { energy: self.has("history/energy/stored"), mounts, wear, worn_profile }
     }
 
     /// Whether the file has the dataset, such as `history/energy/stored` or `bulk/stress`.
@@ -170,7 +171,7 @@ impl Results {
 
     fn table(&self, group: &str, name: &str) -> Result<Field> {
         let mut field = self.field(&format!("{group}/{name}"))?;
-        let fields = columns::interface(2).chain(columns::interface(3)).map(|field| field.name);
+        let fields = [2, 3].into_iter().flat_map(|axes| columns::interface(axes, Extra::ALL)).map(|field| field.name);
         let mut grow = fields.chain(BULK.iter().map(|field| field.name));
         if grow.any(|field| field == name) {
             let rows = self.field(&format!("{group}/time"))?.rows;

@@ -94,7 +94,9 @@ impl Recorder {
         state.check()?;
         let (nodes, axes) = (state.plan.face.nodes(), state.plan.face.axes());
         let numbers = |field: &columns::Field| nodes * field.components.names(axes).len().max(1);
-        if let Some(field) = columns::interface(axes).find(|field| (field.values)(&frame).len() != numbers(field)) {
+        if let Some(field) =
+            columns::interface(axes, state.plan.extra).find(|field| (field.values)(&frame).len() != numbers(field))
+        {
             return Err(Error::Internal(format!("interface field {} without a value for each node", field.name)));
         }
         state.interface.push(frame);

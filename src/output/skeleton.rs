@@ -159,7 +159,7 @@ impl<'a> Skeleton<'a> {
         self.file.create_group(GROUP)?;
         let (rows, nodes, axes) = (plan.interface_rows, plan.face.nodes(), plan.face.axes());
         let node = if plan.face.in_space { "node" } else { "x" };
-        for field in columns::interface(axes) {
+        for field in columns::interface(axes, plan.extra) {
             let components = field.components.names(axes).len();
             let (row, scales): (&[usize], &[&str]) = match components {
                 0 => (&[nodes], &["time", node]),

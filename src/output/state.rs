@@ -71,7 +71,7 @@ impl State {
             history = self.store.write_row(&file, Table::History, ahead, &values)?.wrapping_add(history);
         }
         for (ahead, frame) in self.interface.iter().enumerate() {
-            let fields = columns::interface(self.plan.face.axes());
+            let fields = columns::interface(self.plan.face.axes(), self.plan.extra);
             let mut values: Vec<Vec<u8>> = fields.map(|field| bytes((field.values)(frame))).collect();
             values.push(bytes(&[frame.time]));
             let values: Vec<&[u8]> = values.iter().map(Vec::as_slice).collect();

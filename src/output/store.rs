@@ -78,7 +78,7 @@ pub(super) fn names(table: Table, plan: &Plan) -> Vec<String> {
     match table {
         Table::History => columns::history(plan.extra).map(|column| format!("history/{}", column.name)).collect(),
         Table::Interface => {
-            let fields = columns::interface(plan.face.axes()).map(|field| field.name);
+            let fields = columns::interface(plan.face.axes(), plan.extra).map(|field| field.name);
             fields.chain(["time"]).map(|name| format!("interface/{name}")).collect()
         }
         Table::Bulk if plan.bulk.is_some() => {

@@ -7,7 +7,7 @@ use std::path::Path;
 use super::keys::tables::{IN_PLANE, IN_SPACE};
 use super::{
     Arm, Body, Extend, Indenter, Law, Layer, Material, Memory, MeshFile, Motion, Phase, Quadrature, Scene, Sides, Span,
-    Stepping, Strategy, When, keys,
+    Stepping, Strategy, WearLaw, Wearing, When, keys,
 };
 use crate::error::{Error, Result};
 
@@ -26,6 +26,7 @@ pub(super) fn all(scene: &Scene, file: &Path) -> Result<()> {
         .and_then(|()| adaptive(scene))
         .and_then(|()| exact_laws(scene))
         .and_then(|()| load(scene))
+        .and_then(|()| wear(scene))
         .and_then(|()| scene.phases.iter().try_for_each(|phase| approach(phase, scene)))
         .and_then(|()| moments(&scene.output.bulk_at, &scene.phases))
         .map_err(|(key, reason)| Error::scene(file, key, reason))
@@ -260,6 +261,24 @@ fn load(scene: &Scene) -> Check {
 /// The key by which a phase says its force.
 fn force_key(phase: &Phase) -> String {
     format!("phase.{}.{}", phase.name, if phase.record().is_some() { "motion" } else { "normal_force" })
+}
+
+/// A point wears at a node, by the tractions there; an indenter on the even nodes of a layer.
+fn wear(scene: &Scene) -> Check {
+    let Some(wear) = &scene.wear else { return Ok(()) };
+    if scene.solver.strategy == Strategy::Monolithic {
+        return fail("wear", "is not solved by the strategy \"monolithic\"; use \"condensed\"");
+    }
+    if scene.contact.quadrature == Quadrature::Gauss {
+        return fail("wear", "is not solved with \"gauss\" quadrature; use \"nodal\"");
+    }
+    if wear.law == WearLaw::Energy && scene.friction.is_none() {
+        return fail("wear.law", "\"energy\" goes with what friction dissipates: give [friction], or use \"archard\"");
+    }
+    if wear.of == Wearing::Indenter && scene.layer().is_none() {
+        return fail("wear.of", "\"indenter\" takes the flat face of a [layer]; on a [mesh] use \"body\"");
+    }
+    Ok(())
 }
 
 /// Contact without penetration and Coulomb's law itself are met by tractions at nodes; where displacements decide them, or

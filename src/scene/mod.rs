@@ -20,6 +20,7 @@ mod record;
 mod resolved;
 pub mod schema;
 pub mod sweep;
+mod wear;
 
 use std::path::PathBuf;
 
@@ -38,6 +39,7 @@ pub use mount::{Mount, MountEnd};
 pub use overrides::{get, set};
 pub use penalty::{added_compliance, penalty_for, penalty_on_mesh, shortest_step};
 pub use record::Record;
+pub use wear::{Wear, WearLaw, Wearing};
 
 /// One scene: the layer, its material, the indenter, the contact, the loading history, and what to keep of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -60,6 +62,9 @@ pub struct Scene {
     /// What is between the indenter and what moves it; none = it is moved as it is told.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mount: Option<Mount>,
+    /// How the contact wears; none = not at all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wear: Option<Wear>,
     /// The loading history, in order; never empty.
     #[serde(rename = "phase")]
     pub phases: Vec<Phase>,

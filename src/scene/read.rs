@@ -8,6 +8,7 @@ pub(super) mod material;
 mod mount;
 pub(super) mod phase;
 pub(super) mod record;
+mod wear;
 
 use std::path::Path;
 
@@ -42,6 +43,7 @@ pub fn scene(table: &Table, file: &Path) -> Result<Scene> {
         contact: contact(&root.section("contact")?, &body, &materials, &phases)?,
         friction: root.optional_section("friction")?.as_ref().map(friction::read).transpose()?,
         mount: root.optional_section("mount")?.as_ref().map(mount::read).transpose()?,
+        wear: root.optional_section("wear")?.as_ref().map(wear::read).transpose()?,
         phases,
         solver: solver(solver_section.as_ref(), preset)?,
         output: output(root.optional_section("output")?.as_ref())?,

@@ -239,6 +239,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         call(Laws {
             penalty: interface.penalty(),
             friction: interface.friction(),
+            wear: interface.wear(),
             dt: stage.step.dt,
             resolution: 0.0,
             held: Held { supports: stage.placement.supports, profile: Some(&profile) },

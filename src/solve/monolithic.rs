@@ -150,6 +150,7 @@ impl<const D: usize> Monolithic<D> {
         let laws = Laws {
             penalty: interface.penalty(),
             friction: interface.friction(),
+            wear: None,
             dt: step.dt,
             resolution,
             held: Held::default(),

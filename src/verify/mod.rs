@@ -16,6 +16,7 @@ mod setting;
 mod sliding;
 mod steady;
 mod tangential;
+mod wear;
 
 use std::fmt;
 
@@ -181,6 +182,7 @@ pub fn cases(quick: bool) -> Result<Vec<Case>> {
     list.extend(sliding::cases(quick));
     list.extend(load::cases(quick));
     list.extend(mount::cases(quick));
+    list.extend(wear::cases(quick));
     Ok(list)
 }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use crate::error::{Error, Result};
 use crate::oracle::transient::{self, Update};
 use crate::oracle::{Harmonic, Layer, Moduli, PoissonRule, Solid, steady};
-use crate::scene::{self, Friction, Law, Scene, Source};
+use crate::scene::{self, Friction, Law, Scene, Source, Wear};
 
 /// A periodic layer, an indenter and its motion. Lengths in m, stresses in Pa.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +29,8 @@ pub struct Setting {
     pub penalty: Option<f64>,
     /// None = frictionless.
     pub friction: Option<Friction>,
+    /// None = nothing wears.
+    pub wear: Option<Wear>,
     /// Whether the elements are those for Poisson ratios near 1/2.
     pub mean_dilatation: bool,
     /// The table of what is between the indenter and what moves it.
@@ -111,6 +113,7 @@ impl Setting {
             indenter: Indenter::Wave(5e-4),
             penalty: Some(1e8),
             friction: None,
+            wear: None,
             mean_dilatation: false,
             mount: None,
             phases,
@@ -179,6 +182,9 @@ impl Setting {
         }
         if let Some(mount) = self.mount {
             let _ = writeln!(text, "[mount]\n{mount}");
+        }
+        if let Some(wear) = &self.wear {
+            let _ = writeln!(text, "[wear]\n{}", toml::to_string(wear).unwrap_or_default());
         }
         for Phase { duration, steps, approach, force, velocity } in &self.phases {
             let held = force.map_or(format!("approach = {approach:?}"), |force| format!("normal_force = {force:?}"));

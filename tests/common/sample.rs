@@ -70,12 +70,14 @@ pub fn row(i: usize) -> HistoryRow {
         across: Across::default(),
         mount_normal: 22.0 * v,
         mount_tangential: 23.0 * v,
+        worn_volume: 24.0 * v,
         energy: Energy {
             external_work: 11.0 * v,
             stored: 12.0 * v,
             viscoelastic_dissipation: 13.0 * v,
             friction_dissipation: 14.0 * v,
             penalty: 15.0 * v,
+            wear: 25.0 * v,
             imbalance: 16.0 * v,
             mounts: MountEnergy { spring: 19.0 * v, dashpot: 20.0 * v, kinetic: 21.0 * v },
         },
@@ -83,7 +85,9 @@ pub fn row(i: usize) -> HistoryRow {
 }
 
 /// The real columns of [`row`] other than time, with their factors.
-pub const COLUMNS: [(&str, f64); 22] = [
+pub const COLUMNS: [(&str, f64); 24] = [
+    ("energy/wear", 25.0),
+    ("worn_volume", 24.0),
     ("energy/mount_spring", 19.0),
     ("energy/mount_dashpot", 20.0),
     ("energy/kinetic", 21.0),
@@ -108,7 +112,7 @@ pub const COLUMNS: [(&str, f64); 22] = [
     ("energy/imbalance", 16.0),
 ];
 
-/// Row `i` of the interface fields at face nodes 0, 1, ...: field number f (1 to 6) is 1000 f i + node.
+/// Row `i` of the interface fields at face nodes 0, 1, ...: field number f (1 to 8) is 1000 f i + node.
 pub fn frame(i: usize, face: usize) -> InterfaceFrame {
     let field = |f: usize| (0..face).map(|node| (1000 * f * i + node) as f64).collect();
     InterfaceFrame {
@@ -120,8 +124,11 @@ pub fn frame(i: usize, face: usize) -> InterfaceFrame {
         displacement_x: field(5),
         displacement_z: field(6),
         displacement: Vec::new(),
+        worn_depth: field(7),
+        worn_profile: field(8),
     }
 }
 
 /// The fields of [`frame`], in the order of their number f.
-pub const FIELDS: [&str; 6] = ["pressure", "shear", "gap", "slip_rate", "displacement_x", "displacement_z"];
+pub const FIELDS: [&str; 8] =
+    ["pressure", "shear", "gap", "slip_rate", "displacement_x", "displacement_z", "worn_depth", "worn_profile"];

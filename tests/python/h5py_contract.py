@@ -49,6 +49,8 @@ def check(path):
         columns = [history[name] for name in HISTORY]
         if "energy" in history:
             columns += [history["energy"][name] for name in ENERGY]
+        if "worn_volume" in history:
+            columns += [history["worn_volume"], *([history["energy"]["wear"]] if "energy" in history else [])]
         assert rows >= 1 and history["time"][0] == 0.0 and np.all(np.diff(history["time"][:]) > 0)
         for column in columns:
             assert column.shape == (rows,) and np.all(np.isfinite(column[:])), column.name
@@ -59,7 +61,8 @@ def check(path):
 
         interface = file["interface"]
         frames, nodes = len(interface["time"]), len(interface["x"])
-        for name in INTERFACE:
+        worn = ["worn_depth", *(name for name in ["worn_profile"] if name in interface)] if "worn_volume" in history else []
+        for name in INTERFACE + worn:
             assert interface[name].shape == (frames, nodes) and interface[name].dtype == np.float64, name
             assert np.all(np.isfinite(interface[name][:])), name
 

@@ -8,7 +8,7 @@ use crate::output::{ours, reader::Results};
 use crate::scene::sweep::Sweep;
 
 /// The columns of the history of which the last value is given, with `energy/` ones where a run has them.
-const FIGURES: [&str; 17] = [
+const FIGURES: [&str; 18] = [
     "time",
     "approach",
     "sliding",
@@ -26,6 +26,8 @@ const FIGURES: [&str; 17] = [
     "energy/friction_dissipation",
     "energy/penalty",
     "energy/imbalance",
+    // Empty where nothing wears.
+    "worn_volume",
 ];
 
 const FILE: &str = "summary.csv";

@@ -26,6 +26,7 @@ pub fn sheet(run: &Run) -> Result<Sheet> {
         ("stored in the layer", 0, column("stored")),
         ("dissipated in the arms", 2, column("viscoelastic_dissipation")),
         ("stored in the penalty", 4, column("penalty")),
+        ("worn off", 3, column("wear")),
     ];
     // An elastic layer has no arms.
     let parts = parts.iter().filter(|(.., values)| values.iter().any(|energy| *energy != 0.0));

@@ -11,6 +11,7 @@ mod stick_slip;
 mod stress;
 mod tractions;
 mod unit;
+mod wear;
 
 use std::path::{Path, PathBuf};
 
@@ -98,7 +99,7 @@ const COORDINATES: &str = "interface/coordinates";
 const NO_LAYER: &str = "a body in space from a mesh (ParaView opens its XDMF file)";
 
 /// All figures of a result file.
-pub const FIGURES: [Kind; 11] = [
+pub const FIGURES: [Kind; 12] = [
     Kind { name: "history", shows: "forces against time", lacks: |_| None, sheet: history::sheet },
     Kind {
         name: "reactions",
@@ -161,6 +162,16 @@ pub const FIGURES: [Kind; 11] = [
         sheet: space::maps::shear,
     },
     Kind { name: "gap", shows: "in space: the gap from above", lacks: Run::lacks_space, sheet: space::maps::gap },
+    Kind {
+        name: "wear",
+        shows: "worn depth, pressure, worn volume",
+        lacks: |run| match run.results.has("history/worn_volume") {
+            true if run.scene.is_in_space() => Some("it is for runs in the plane"),
+            true => run.lacks_interface(),
+            false => Some("no wear (the scene's [wear] asks for it)"),
+        },
+        sheet: wear::sheet,
+    },
     Kind {
         name: "material",
         shows: "relaxation, loss and storage moduli, loss tangent (Figure 3)",

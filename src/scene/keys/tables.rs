@@ -5,7 +5,9 @@ use Bound::{At, Beyond};
 
 use super::kind::{Decision, Key, Keys, Kind};
 use super::quantity::{Bound, Quantity};
-use crate::scene::{Detrend, Element, Extend, Memory, PoissonRule, Quadrature, Seam, Sides, Strategy};
+use crate::scene::{
+    Detrend, Element, Extend, Memory, PoissonRule, Quadrature, Seam, Sides, Strategy, WearLaw, Wearing,
+};
 
 const fn table(about: &'static str, keys: &'static [Key]) -> Keys {
     Keys { about, keys, decides: None }
@@ -54,6 +56,7 @@ pub(crate) static SCENE: Keys = table(
         Key::new("contact", Kind::Table(&CONTACT)).required(),
         Key::new("friction", Kind::Table(&FRICTION)),
         Key::new("mount", Kind::Table(&MOUNT)),
+        Key::new("wear", Kind::Table(&WEAR)),
         Key::new("phase", Kind::Tables("an array of tables, [[phase]]", &PHASE)).required(),
         Key::new("solver", Kind::Table(&SOLVER)),
         Key::new("output", Kind::Table(&OUTPUT)),
@@ -353,6 +356,20 @@ static NORMAL_MOUNT: Keys = table(
 
 static TANGENTIAL_MOUNT: Keys =
     table("A spring and a dashpot beside each other, and a mass.", &[STIFFNESS, DAMPING, MASS]);
+
+pub(crate) const WEARING: [(&str, Wearing); 2] = [("body", Wearing::Body), ("indenter", Wearing::Indenter)];
+pub(crate) const WEAR_LAWS: [(&str, WearLaw); 2] = [("archard", WearLaw::Archard), ("energy", WearLaw::Energy)];
+
+static WEAR: Keys = table(
+    "How the contact wears. Without this table nothing does.",
+    &[
+        choice("of", &words(&WEARING)).required().about("what wears"),
+        choice("law", &words(&WEAR_LAWS))
+            .required()
+            .about("archard: rate = coefficient p |w|; energy: coefficient q.w"),
+        number("coefficient", Quantity::positive("a positive coefficient in 1/Pa")).required(),
+    ],
+);
 
 static PHASE: Keys = table(
     "A phase of the loading history, from where the one before left the indenter.",

@@ -49,9 +49,10 @@ impl<const D: usize> Behind<'_, D> {
         Ok(u)
     }
 
-    /// Whether the laws ask for no motion along the face: without friction on a flat one.
+    /// Whether the laws ask for no motion along the face: without friction and wear on a flat one.
     pub fn is_normal_alone(&self) -> bool {
-        self.interface.friction().is_none() && self.interface.points().are_flat()
+        let slips = self.interface.friction().is_some() || self.interface.wear().is_some();
+        !slips && self.interface.points().are_flat()
     }
 
     /// The displacements of the nodes under tractions, from what they do without, m, and the forces, N/m.
@@ -177,7 +178,7 @@ impl<const D: usize> Behind<'_, D> {
             Site {
                 normal: point.normal,
                 weight: point.weight,
-                clearance: vertical * point.normal[D - 1],
+                clearance: vertical * point.normal[D - 1] + interface.recession(i),
                 drive: way + past + elastic,
                 elastic,
                 slid,

@@ -89,6 +89,11 @@ impl<const D: usize> Factor<D> {
             for ((right, point), moved) in right.iter_mut().zip(&self.points).zip(moves(&y)?) {
                 *right -= point.rows()[0] * moved;
             }
+            let worn = |(point, y): (&Linearised<D>, &SVector<f64, D>)| point.worn_by(y);
+            let wears = self.points.iter().any(|point| point.wearing[0] != 0.0);
+            if wears {
+                right.iter_mut().zip(self.points.iter().zip(&y).map(worn)).for_each(|(right, worn)| *right += worn);
+            }
         }
         let right: Vec<f64> = self.unknowns.iter().map(|unknown| unknown.along.dot(&right[unknown.point])).collect();
         let mut solution = vec![0.0; right.len()];

@@ -39,7 +39,7 @@ impl<const D: usize> Fourier<D> {
         let (transform, waves) = compliance.waves()?;
         let per_traction = weight / secant;
         let active: Vec<_> = points.iter().filter(|point| point.active).collect();
-        let (soft, stiff) = active.first().map_or((1.0, 0.0), |point| (point.soft, point.stiff));
+        let [soft, stiff] = normal(&active);
         let rho = active.iter().map(|point| modulus(point)).fold(0.0, f64::max);
         // Along the slip and, in space, across it, where a point that slides is soft too.
         let slacks = || active.iter().flat_map(|point| point.slack.into_iter().take(D - 1));
@@ -92,6 +92,17 @@ impl<const D: usize> Fourier<D> {
             return SVector::zeros();
         }
         point.scaled(point.slack.map(|slack| share(slack).sqrt()), v)
+    }
+}
+
+/// 1 - theta and theta rho_n: the same of all points but where they wear, each as much as it slips; then their means.
+fn normal<const D: usize>(active: &[&Linearised<D>]) -> [f64; 2] {
+    let wears = active.iter().any(|point| point.wearing != [0.0; 2]);
+    match active.first() {
+        None => [1.0, 0.0],
+        Some(point) if !wears => [point.soft, point.stiff],
+        _ => [|point: &Linearised<D>| point.soft, |point: &Linearised<D>| point.stiff]
+            .map(|of| active.iter().map(|point| of(point)).sum::<f64>() / active.len() as f64),
     }
 }
 

@@ -8,6 +8,8 @@
 //! J   = J_t - n J_n;   J = dt out of contact
 //! ```
 //!
+//! Where a point wears, b_0 = theta beta of `worn`, b_1 = theta beta rho_t, J_n is more by b_0 e.dq - b_1 e.(C dt).
+//!
 //! In r = dq - f' e dp the second row less b times the first is (1 - Th) r + Th rho_t T (C dt): where all slips, Th = 0, r is known
 //! and the pressures alone are left.
 
@@ -34,6 +36,8 @@ pub struct Linearised<const D: usize> {
     pub grip: [f64; 2],
     /// f'
     pub drag: f64,
+    /// b_0, and b_1.
+    pub wearing: [f64; 2],
 }
 
 impl<const D: usize> Linearised<D> {
@@ -49,17 +53,20 @@ impl<const D: usize> Linearised<D> {
             slack: answer.slack,
             grip: answer.grip.map(|grip| grip * rho),
             drag: answer.drag,
+            wearing: answer.wearing,
         }
     }
 
     /// How many numbers it is in a list.
-    pub const NUMBERS: usize = 8 + 2 * D;
+    pub const NUMBERS: usize = 10 + 2 * D;
 
     /// As numbers.
     pub fn numbers(&self) -> Vec<f64> {
-        let Self { normal, direction, active, soft, stiff, slack, grip, drag } = self;
-        let scalars = [f64::from(u8::from(*active)), *soft, *stiff, slack[0], slack[1], grip[0], grip[1], *drag];
-        scalars.into_iter().chain(normal.iter().copied()).chain(direction.iter().copied()).collect()
+        let Self { normal, direction, active, soft, stiff, slack, grip, drag, wearing } = self;
+        let scalars = [f64::from(u8::from(*active)), *soft, *stiff, *drag]
+            .into_iter()
+            .chain([*slack, *grip, *wearing].into_iter().flatten());
+        scalars.chain(normal.iter().copied()).chain(direction.iter().copied()).collect()
     }
 
     /// From [`Self::NUMBERS`] numbers.
@@ -68,11 +75,12 @@ impl<const D: usize> Linearised<D> {
             active: list[0] != 0.0,
             soft: list[1],
             stiff: list[2],
-            slack: [list[3], list[4]],
-            grip: [list[5], list[6]],
-            drag: list[7],
-            normal: SVector::from_column_slice(&list[8..][..D]),
-            direction: SVector::from_column_slice(&list[8 + D..][..D]),
+            drag: list[3],
+            slack: [list[4], list[5]],
+            grip: [list[6], list[7]],
+            wearing: [list[8], list[9]],
+            normal: SVector::from_column_slice(&list[10..][..D]),
+            direction: SVector::from_column_slice(&list[10 + D..][..D]),
         }
     }
 
@@ -92,8 +100,11 @@ impl<const D: usize> Linearised<D> {
             return *dt;
         }
         let dp = -self.normal.dot(dt);
-        let normally = self.soft * dp - self.stiff * self.normal.dot(moved);
         let dq = dt + self.normal * dp;
+        let mut normally = self.soft * dp - self.stiff * self.normal.dot(moved);
+        if self.wearing != [0.0; 2] {
+            normally += self.wearing[0] * self.direction.dot(&dq) - self.wearing[1] * self.direction.dot(moved);
+        }
         let along = self.direction * (self.slack[0] * self.drag * (dp - normally));
         self.scaled(self.slack, dq) + self.scaled(self.grip, self.tangential(moved)) - along - self.normal * normally
     }
@@ -122,13 +133,24 @@ impl<const D: usize> Linearised<D> {
         SMatrix::identity() - self.direction * self.normal.transpose() * self.drag
     }
 
+    /// What a known r adds to the row of the pressure, which is along -n.
+    pub fn worn_by(&self, r: &SVector<f64, D>) -> SVector<f64, D> {
+        self.normal * (self.wearing[0] * self.direction.dot(r))
+    }
+
     /// What a motion adds to the combined rows, and what r - n dp itself does.
     pub fn rows(&self) -> [SMatrix<f64, D, D>; 2] {
         let normally = self.normal * self.normal.transpose();
         let along = self.direction * self.direction.transpose();
         let across = SMatrix::identity() - normally - along;
         let of = |normal: f64, [a, b]: [f64; 2]| normally * normal + along * a + across * b;
-        [of(self.stiff, self.grip), of(self.soft, self.slack)]
+        let mut rows = [of(self.stiff, self.grip), of(self.soft, self.slack)];
+        if self.wearing != [0.0; 2] {
+            let turned = self.normal * self.direction.transpose();
+            rows[0] += turned * self.wearing[1];
+            rows[1] += normally * (self.wearing[0] * self.drag) - turned * self.wearing[0];
+        }
+        rows
     }
 }
 

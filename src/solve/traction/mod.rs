@@ -5,7 +5,7 @@
 //! rho > 0 make of the laws a projection:
 //!
 //! ```text
-//! p* = alpha/(alpha + rho_n) max(p + rho_n o, 0)
+//! p* = alpha/(alpha + rho_n) max(p + rho_n o, 0)                    where nothing wears; else see `worn`
 //! q* = |q|(m) e,    m >= 0 where |q|(m) + rho_t m = |q + rho_t s|,    e along q + rho_t s
 //! G  = t - t*
 //! ```
@@ -24,12 +24,14 @@ mod linear;
 mod pressed;
 mod search;
 mod sweep;
+mod worn;
 
 use nalgebra::SVector;
 
 use crate::element::mpjr::Relative;
 use crate::friction::{Circumstances, Law, Met};
 use crate::interface::State;
+use crate::wear::Wear;
 
 pub use behind::Behind;
 pub use continuation::start;
@@ -85,6 +87,8 @@ pub struct Laws<'a> {
     pub penalty: Option<f64>,
     /// None = frictionless.
     pub friction: Option<&'a dyn Law>,
+    /// None = nothing wears.
+    pub wear: Option<Wear>,
     /// The length of the step, s.
     pub dt: f64,
     /// See [`Circumstances::resolution`], m: 0 but where displacements are to say the same.
@@ -104,7 +108,7 @@ pub struct Answer<const D: usize> {
     pub excess: SVector<f64, D>,
     /// Whether p + rho_n o > 0: the point is in contact.
     pub active: bool,
-    /// theta = alpha/(alpha + rho_n), and 1 - theta to all its digits.
+    /// theta = alpha/(alpha + rho_n), less where it wears, and 1 - theta to all its digits.
     pub stiff: f64,
     /// See `stiff`.
     pub soft: f64,
@@ -120,6 +124,10 @@ pub struct Answer<const D: usize> {
     pub slip: SVector<f64, D>,
     /// Whether it sticks.
     pub sticks: bool,
+    /// What the step wears, m.
+    pub worn: f64,
+    /// How the pressure goes with the shear, -, and with the slip, Pa/m, through what wears: see `worn`.
+    pub wearing: [f64; 2],
     /// The square of what round-off leaves of G, Pa^2.
     pub noise: f64,
 }
@@ -145,7 +153,10 @@ impl<const D: usize> Site<D> {
             return answer;
         }
         (answer.active, (answer.stiff, answer.soft)) = (true, softened(laws.penalty, rho));
-        let pressed = answer.stiff * trial;
+        let mut pressed = answer.stiff * trial;
+        if let Some(wear) = laws.wear {
+            pressed = self.wear((trial, (shear, slip), laws), wear, &mut answer);
+        }
         let mut closed = SVector::zeros();
         if let Some(law) = laws.friction {
             let at = self.circumstances(pressed, laws);
@@ -154,6 +165,24 @@ impl<const D: usize> Site<D> {
         (answer.pressure, answer.shear) = (pressed, closed);
         answer.excess = (shear - closed) - normal * (pressure - pressed);
         answer
+    }
+
+    /// p* of a point that wears, and what is known of it.
+    fn wear(
+        &self,
+        (trial, (shear, slip), laws): (f64, (SVector<f64, D>, SVector<f64, D>), Laws<'_>),
+        wear: Wear,
+        answer: &mut Answer<D>,
+    ) -> f64 {
+        let length = slip.norm();
+        let reach = self.moduli.tangential.map_or(0.0, |rho| (shear + slip * rho).norm());
+        let met = worn::meet((self, laws), trial, (length, reach), wear);
+        (answer.stiff, answer.soft) = (met.stiff, met.soft);
+        (answer.worn, answer.wearing) = (met.depth, met.coupling);
+        if laws.friction.is_none() && length > 0.0 {
+            answer.direction = slip / length;
+        }
+        met.pressure
     }
 
     /// In which its friction answers.
@@ -237,6 +266,8 @@ impl<const D: usize> Answer<D> {
             drag: 0.0,
             slip,
             sticks: false,
+            worn: 0.0,
+            wearing: [0.0; 2],
             noise: 0.0,
         }
     }
@@ -258,9 +289,11 @@ impl<const D: usize> Answer<D> {
         let Relative { overlap, .. } = site.relative(motion);
         let of_step = self.slip - site.elastic;
         if !self.active {
-            return State { overlap: overlap.min(0.0), slip: of_step, slid: before.slid, ..State::default() };
+            let State { slid, worn, .. } = *before;
+            return State { overlap: overlap.min(0.0), slip: of_step, slid, worn, ..State::default() };
         }
         State {
+            worn: before.worn + self.worn,
             slid: before.slid + laws.friction.map_or(0.0, |law| law.lasting(self.slip.norm()).length),
             pressure: self.pressure,
             shear: self.shear,
