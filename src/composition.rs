@@ -35,13 +35,13 @@ use crate::scene::{self, Scene, Stepping, When};
 use crate::solve::{
     Body, Compliance, Condensed, Following, Freedom, Inside, Interior, LARGE_FACE, LARGE_PERIODIC_FACE, Layered,
     MAX_NEWTON, Monolithic, PeriodicColumn, Relaxation, Relaxations, Remembering, Response, Solid, Sparse,
-    TransientProblem,
+    TransientProblem, Way,
 };
 use crate::wear::{self, Wear};
 
 use body::Materials;
 pub use body::Meshed;
-pub use estimate::{Estimate, affordable};
+pub use estimate::{Estimate, affordable, countable};
 pub use inputs::inputs;
 pub use outline::{Outline, Stretch, outline};
 pub use pressed::PressedEnd;
@@ -268,23 +268,32 @@ fn condensed<const D: usize, R: Response<D> + 'static>(
 ) -> Result<Strategy> {
     let periodic = scene.layer().is_some_and(scene::Layer::is_periodic);
     let components = D * interface.face().count();
+    let mounts = mounts::<D>(scene);
+    let freedom = Freedom { directions: [scene.is_loaded(), mounts[1].is_some(), mounts[2].is_some()], height };
+    let points = interface.points();
+    let alone = interface.friction().is_none() && points.are_flat() && !points.share_nodes();
+    let way = match alone && periodic && components > LARGE_FACE && freedom.unknowns() == 0 {
+        true => Way::Pressures,
+        false => Way::Newton,
+    };
     let linear = match components > if periodic { LARGE_PERIODIC_FACE } else { LARGE_FACE } {
+        _ if way == Way::Pressures => Linear::Own,
         // Where a product costs next to nothing, Newton's method need not wait for exact steps; a step from a guess that is a hundredth off
         // should end below its tolerance.
         true if components <= LARGE_FACE => Linear::OwnIterative(1e-7),
+        // Most steps of Newton's method end at a kink of the laws: until the last ones, half of the way is as good as all of it.
+        true if periodic => Linear::OwnIterative(0.5),
         true => Linear::OwnIterative(1e-2),
         false => Linear::Own,
     };
     // The tractions of the points, on rank 0.
-    let points = if u.local_len() > 0 { interface.points().count() } else { 0 };
-    let mounts = mounts::<D>(scene);
-    let freedom = Freedom { directions: [scene.is_loaded(), mounts[1].is_some(), mounts[2].is_some()], height };
+    let points = if u.local_len() > 0 { points.count() } else { 0 };
     let last = if points > 0 { freedom.unknowns() } else { 0 };
     let tractions = Vector::new(comm, D * points + last)?;
     let mut tangent = Matrix::shell(comm, tractions.local_len())?;
     let settings = Settings { linear, max_newton: MAX_NEWTON, search: Search::Own };
     let integrator = Integrator::new(comm, settings, &mut tangent)?;
-    let told = (scene.solver.tolerance, freedom);
+    let told = (scene.solver.tolerance, freedom, way);
     let strategy = Box::new(Condensed::new(comm, (interface, mounts), response, &u, told)?);
     Ok(Strategy { strategy, tangent, u: tractions, integrator })
 }

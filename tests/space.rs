@@ -276,3 +276,33 @@ fn ranks_agree_in_space() {
         assert!(partial > 0.0 && partial < 1.0);
     }
 }
+
+/// Without friction the pressures of a large periodic face are found by conjugate gradients, with a coefficient of 0 by Newton's method:
+/// to a tolerance of 1e-12 both are the same to 1e-10, of a rough profile that is pressed, slid and lifted, without penetration and with a
+/// penalty, whatever the memory, in space and in the plane; and they take one step of Newton's method where that takes several.
+#[test]
+fn pressures_alone_are_what_newton_finds() {
+    const SPACE: [&str; 2] = ["layer.width=[1.0,1.0]", "layer.cells=[24,24,6]"];
+    const ROUGH: &str =
+        "indenter={ profile = \"rough\", hurst = 0.8, rms_slope = 2e-3, shortest = 0.25, longest = 1.0, seed = 3 }";
+    const BULK: &str = "material.poisson_rule=constant_bulk_modulus";
+    const PENALTY: &str = "contact.penalty=1e6";
+    let cases: [&[&str]; 4] = [
+        &[SPACE[0], SPACE[1], ROUGH],
+        &[SPACE[0], SPACE[1], ROUGH, PENALTY],
+        &[SPACE[0], SPACE[1], ROUGH, BULK],
+        &["layer.cells=[640,4]", ROUGH],
+    ];
+    let alone =
+        WAVE.replace("[friction]\nlaw = \"coulomb\"\ncoefficient = 0.3\n", "").replace("bulk_at = [\"slide\"]", "");
+    let newton = WAVE.replace("coefficient = 0.3", "coefficient = 0.0").replace("bulk_at = [\"slide\"]", "");
+    for case in cases {
+        let (alone, newton) = (solved(&alone, case), solved(&newton, case));
+        for name in ["normal_force", "contact_fraction", "energy/stored"] {
+            let (a, b) = (alone.history(name), newton.history(name));
+            assert!(difference(&a, &b) < 1e-10, "{case:?} {name}: {}", difference(&a, &b));
+        }
+        let most = alone.history("newton_iterations").iter().fold(0.0_f64, |most, n| most.max(*n));
+        assert!(most <= 2.0, "{case:?}: {most}");
+    }
+}

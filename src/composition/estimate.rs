@@ -13,7 +13,21 @@ use crate::parallel::agree;
 use crate::scene::{Body, Layer, Scene};
 
 /// What the program and its libraries take before they do anything, bytes.
-const PROGRAM: f64 = 5e7;
+const PROGRAM: f64 = 5.7e7;
+/// Per node of a periodic face in space: the points and their states, what of a step is tried, GMRES; and for each arm. Measured with 128 and
+/// 256 nodes a side, as are those below.
+const FACE_NODE: f64 = 3400.0;
+const FACE_ARM: f64 = 30.0;
+/// Per node of a periodic layer in space whose interior has a memory: its elimination at two step lengths, and what is beside the arms;
+/// for each part that relaxes by itself; for each arm.
+const WAVE_NODE: f64 = 330.0;
+const WAVE_PART: f64 = 72.0;
+const WAVE_ARM: f64 = 24.5;
+/// s per step and node of such a face with friction and without, and per step and node of such a layer.
+const FACE_STEP: [f64; 2] = [5e-6, 1.5e-6];
+const WAVE_STEP: f64 = 5e-8;
+/// What an index of PETSc counts.
+const MOST: f64 = i32::MAX as f64;
 
 /// A rough cost, from measured times: within a factor of three on a recent core.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +41,9 @@ pub struct Estimate {
 impl Estimate {
     /// Of a scene whose body is as the outline says.
     pub fn of(scene: &Scene, outline: &Outline) -> Self {
+        if let Some(layer) = scene.layer().filter(|layer| by_transforms(scene, layer)) {
+            return Self::of_waves(scene, layer);
+        }
         let unknowns = outline.unknowns as f64;
         let axes = if outline.is_in_space() { 3.0 } else { 2.0 };
         let face = axes * outline.face_nodes as f64;
@@ -64,6 +81,49 @@ impl Estimate {
         };
         Self { step, memory: PROGRAM + memory }
     }
+
+    /// Of a periodic layer in space.
+    fn of_waves(scene: &Scene, layer: &Layer) -> Self {
+        let (nodes, rows) = (layer.face_nodes() as f64, layer.rows as f64);
+        let arms =
+            scene.materials.iter().map(|material| material.arms.len() + material.bulk_arms.len()).sum::<usize>() as f64;
+        let step = FACE_STEP[usize::from(scene.friction.is_none())];
+        match form(scene) {
+            Form::Following | Form::Monolithic => {
+                Self { step: step * nodes, memory: PROGRAM + nodes * (FACE_NODE + FACE_ARM * arms) }
+            }
+            Form::Remembering => {
+                // The shear and the bulk of each material.
+                let parts = 2.0 * scene.materials.len() as f64;
+                let of_row = WAVE_NODE + WAVE_PART * parts + WAVE_ARM * arms;
+                Self { step: nodes * (step + WAVE_STEP * rows), memory: PROGRAM + nodes * (FACE_NODE + of_row * rows) }
+            }
+        }
+    }
+}
+
+/// Whether a layer in space is solved by transforms of its face.
+fn by_transforms(scene: &Scene, layer: &Layer) -> bool {
+    layer.spans.len() == 2 && layer.is_periodic() && form(scene) != Form::Monolithic
+}
+
+/// Refuses what PETSc's 32-bit indices do not count: unknowns, and what a sparse system on one rank has of entries.
+pub fn countable(scene: &Scene, file: &Path) -> Result<()> {
+    let Some(layer) = scene.layer() else { return Ok(()) };
+    let dimensions = (layer.spans.len() + 1) as f64;
+    let face = dimensions * layer.face_nodes() as f64;
+    let body = face * (layer.rows as f64 + 1.0);
+    let entries = body * dimensions * 3.0_f64.powf(dimensions);
+    let (what, count) = match layer.is_periodic() && form(scene) != Form::Monolithic {
+        true if scene.output.bulk_at.is_empty() => ("unknowns of the face", face),
+        true => ("displacements, of which output.bulk_at makes a mesh", body),
+        false => ("entries of the stiffness", entries),
+    };
+    if count <= MOST {
+        return Ok(());
+    }
+    let reason = format!("{count:.3e} {what}, and PETSc's 32-bit indices count {MOST:.3e}; take fewer cells");
+    Err(Error::scene(file, "layer.cells", reason))
 }
 
 /// What a sparse factor costs.
@@ -93,6 +153,7 @@ impl Fill {
 
 /// Refuses a scene that needs more memory than can be had: some libraries that get none try for ever. Collective.
 pub(super) fn fits(comm: &SimpleCommunicator, scene: &Scene, file: &Path, outline: &Outline) -> Result<()> {
+    countable(scene, file)?;
     let mine = if comm.rank() == 0 { affordable(scene, file, outline, comm.size() as usize) } else { Ok(()) };
     agree(comm, mine)
 }

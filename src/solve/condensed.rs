@@ -39,6 +39,7 @@ pub struct Condensed<const D: usize, R> {
     face: AcceptedFace<D>,
     response: R,
     tolerance: f64,
+    way: Way,
     /// Brings vectors of the face's nodes to all ranks.
     gather: Gather,
     /// u_free, and the accepted u, of the face's nodes.
@@ -56,10 +57,22 @@ pub struct Condensed<const D: usize, R> {
     reuse: bool,
     /// How often bulk fields were asked for.
     recoveries: usize,
+    /// Transforms that the response had made before: other scenes may share it.
+    transforms: usize,
     /// What of the indenter's place may be unknown.
     freedom: Freedom,
     /// Whether a jump was refused since the last accepted step.
     jumps: bool,
+}
+
+/// How the equations of a step are solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// By Newton's method.
+    Newton,
+    /// By conjugate gradients on the pressures, each run of which is a step of Newton's method: see
+    /// [`traction::pressures`]. Of a flat periodic face without friction under an indenter whose place is given.
+    Pressures,
 }
 
 /// What of the indenter's place may be unknown. These are the last unknowns, on rank 0.
@@ -104,16 +117,18 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         (interface, mounts): (Interface<D>, [Option<Mount>; DIRECTIONS]),
         response: R,
         layout: &Vector,
-        (tolerance, freedom): (f64, Freedom),
+        (tolerance, freedom, way): (f64, Freedom, Way),
     ) -> Result<Self> {
         let components = D * interface.face().count();
         let indices: Vec<i32> = (0..components as i32).collect();
         let points = if layout.local_len() > 0 { interface.points().count() } else { 0 };
+        let transforms = response.work().transforms;
         Ok(Self {
             comm: comm.duplicate(),
             face: AcceptedFace::new(interface, mounts),
             response,
             tolerance,
+            way,
             gather: Gather::new(layout, &indices)?,
             free: layout.like()?,
             displacement: layout.like()?,
@@ -124,6 +139,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
             linear: Linear::default(),
             reuse: components > LARGE_FACE,
             recoveries: 0,
+            transforms,
             freedom,
             jumps: false,
         })
@@ -533,10 +549,12 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
     }
 
     fn work(&self) -> Work {
+        let work = self.response.work();
         Work {
             tangential_laws: self.face.interface.tangential_laws(),
             recoveries: self.recoveries,
-            ..self.response.work()
+            transforms: work.transforms - self.transforms,
+            ..work
         }
     }
 }

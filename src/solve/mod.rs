@@ -20,7 +20,7 @@ use crate::petsc::{Matrix, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 
 pub use body::{Body, Moduli, Region, Solid};
-pub use condensed::{Condensed, Freedom, LARGE_FACE, LARGE_PERIODIC_FACE};
+pub use condensed::{Condensed, Freedom, LARGE_FACE, LARGE_PERIODIC_FACE, Way};
 pub use driver::{Counts, Driver, MAX_NEWTON, Position};
 pub use monolithic::Monolithic;
 pub use response::{
@@ -104,6 +104,8 @@ pub struct Work {
     pub factorisations: usize,
     /// Solves with them.
     pub solves: usize,
+    /// Fourier transforms of one component of the face's nodes, there or back.
+    pub transforms: usize,
 }
 
 /// The contact face at an accepted state, whole on every rank.

@@ -323,6 +323,7 @@ impl<const D: usize> TransientProblem for Monolithic<D> {
             recoveries: self.recoveries,
             factorisations: self.inverse.done[0],
             solves: self.inverse.done[1],
+            transforms: 0,
         }
     }
 }

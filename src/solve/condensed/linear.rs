@@ -4,8 +4,8 @@ use nalgebra::SVector;
 
 use super::super::response::Response;
 use super::super::traction::{self, Border, Factor, Fourier, Linearised};
-use super::{Condensed, LARGE_PERIODIC_FACE, tractions, unprepared, write};
-use crate::error::Result;
+use super::{Condensed, LARGE_PERIODIC_FACE, Way, tractions, unprepared, write};
+use crate::error::{Error, Result};
 use crate::petsc::{Step, Vector};
 
 /// More applications of an old factor than this in one solve, and a new one is made.
@@ -18,16 +18,21 @@ pub(super) struct Linear<const D: usize> {
     /// Where the place of the indenter is unknown.
     pub border: Option<Border<D>>,
     pub factor: Option<Factor<D>>,
-    pub fourier: Option<Fourier<D>>,
+    pub fourier: Option<Fourier>,
     /// The step that the factor was made for, and the secant.
     pub made_for: Option<(Step, f64)>,
     /// Solves since the last tangent.
     pub used: usize,
+    /// For what passes through transforms, kept from one product to the next.
+    pub room: Vec<f64>,
 }
 
 impl<const D: usize, R: Response<D>> Condensed<D, R> {
     /// Makes the system that of the state that was tried last.
     pub(super) fn linearise(&mut self, step: Step) -> Result<()> {
+        if self.way == Way::Pressures {
+            return Ok(());
+        }
         let stage = self.stage.as_ref().ok_or_else(unprepared)?;
         let points = stage.trial.linearised(&stage.sites);
         let Some(behind) = self.behind() else { return Ok(()) };
@@ -44,7 +49,8 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
             false => None,
         };
         if fourier.is_some() {
-            self.linear = Linear { points, border, fourier, ..Linear::default() };
+            let room = std::mem::take(&mut self.linear.room);
+            self.linear = Linear { points, border, fourier, room, ..Linear::default() };
             return Ok(());
         }
         let same = made_for.is_some_and(|(made, secant)| made.dt == step.dt && secant == behind.secant);
@@ -55,12 +61,20 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         // A singular system has no factor; the solve then says so by what it returns.
         let factor = Factor::new(points.clone(), &|j, rows| behind.influence(j, rows)).ok();
         let made_for = Some((step, behind.secant));
-        self.linear = Linear { points, border, factor, fourier: None, made_for, used: 0 };
+        self.linear = Linear { points, border, factor, made_for, ..Linear::default() };
         Ok(())
     }
 
     /// product = J v
     pub(super) fn product(&mut self, v: &Vector, product: &mut Vector) -> Result<()> {
+        if self.way == Way::Pressures {
+            let reason =
+                "contact without friction is solved by conjugate gradients of its own here: leave -ksp_type out";
+            return Err(Error::Usage(reason.into()));
+        }
+        if self.linear.fourier.is_some() && self.linear.border.is_none() {
+            return self.product_by_transforms(v, product);
+        }
         let (Some(behind), Some(stage)) = (self.behind(), self.stage.as_ref()) else {
             product.view_mut()?;
             return Ok(());
@@ -77,10 +91,20 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
 
     /// x = J^-1 b, or nearly so.
     pub(super) fn solution(&mut self, b: &Vector, x: &mut Vector) -> Result<()> {
+        if self.way == Way::Pressures {
+            return self.pressed(x);
+        }
         self.linear.used += 1;
+        if self.linear.fourier.is_some() && self.linear.border.is_none() {
+            return self.solution_by_transforms(b, x);
+        }
         let (right, mut last) = (tractions::<D>(b)?, self.last(b)?);
         let inverse = |right: &[SVector<f64, D>]| match (&self.linear, self.behind()) {
-            (Linear { fourier: Some(fourier), points, .. }, Some(_)) => fourier.solve(points, right),
+            (Linear { fourier: Some(fourier), points, .. }, Some(behind)) => {
+                let mut solved: Vec<f64> = right.iter().flatten().copied().collect();
+                fourier.solve(behind.compliance, points, &mut solved, &mut Vec::new())?;
+                Ok(solved.chunks_exact(D).map(SVector::from_column_slice).collect())
+            }
             (Linear { factor: Some(factor), .. }, Some(behind)) => factor.solve(right, |t| behind.moves(t)),
             _ => Ok(vec![SVector::repeat(f64::NAN); right.len()]),
         };
@@ -100,5 +124,45 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         };
         write(x, solution.into_iter())?;
         self.write_last(last, x)
+    }
+
+    /// The same of a large periodic face, its nodes the points, under an indenter whose place is given: in as few passes as there are.
+    fn product_by_transforms(&mut self, v: &Vector, product: &mut Vector) -> Result<()> {
+        let mut room = std::mem::take(&mut self.linear.room);
+        let (Some(behind), Some(stage)) = (self.behind(), self.stage.as_ref()) else { return Err(unprepared()) };
+        let v = v.view()?;
+        let per_traction = stage.sites.first().map_or(0.0, |site| site.weight) / behind.secant;
+        room.clear();
+        room.extend(v.iter().map(|t| t * per_traction));
+        behind.compliance.displace(&mut room, if behind.is_normal_alone() { D - 1..D } else { 0..D })?;
+        let moved = room.chunks_exact(D).map(SVector::from_column_slice);
+        let of = |((point, dt), moved): ((&Linearised<D>, _), _)| point.product(&dt, &moved);
+        let products =
+            self.linear.points.iter().zip(v.chunks_exact(D).map(SVector::from_column_slice)).zip(moved).map(of);
+        write(product, products)?;
+        self.linear.room = room;
+        Ok(())
+    }
+
+    /// See [`Self::product_by_transforms`].
+    fn solution_by_transforms(&mut self, b: &Vector, x: &mut Vector) -> Result<()> {
+        let mut room = std::mem::take(&mut self.linear.room);
+        let (Some(behind), Some(fourier)) = (self.behind(), &self.linear.fourier) else { return Err(unprepared()) };
+        let mut solved = x.view_mut()?;
+        solved.copy_from_slice(&b.view()?);
+        fourier.solve(behind.compliance, &self.linear.points, &mut solved, &mut room)?;
+        drop(solved);
+        self.linear.room = room;
+        Ok(())
+    }
+
+    /// x = the tractions that were tried last less those of pressures that meet the laws.
+    fn pressed(&self, x: &mut Vector) -> Result<()> {
+        let Some((behind, stage)) = self.behind().zip(self.stage.as_ref()) else { return x.view_mut().map(|_| ()) };
+        let (sites, trial) = (&stage.sites, &stage.trial);
+        let told = (self.face.interface.penalty(), self.tolerance, self.scale);
+        let pressures = traction::pressures(sites, trial, &behind, told)?;
+        let away = trial.tractions.iter().zip(sites).zip(pressures).map(|((t, site), p)| t + site.normal * p);
+        write(x, away)
     }
 }

@@ -5,11 +5,12 @@
 use std::cell::OnceCell;
 use std::ops::Range;
 
-use nalgebra::{DMatrix, SMatrix};
+use nalgebra::SMatrix;
 
 use super::super::body::Body;
-use super::transform::{Transform, Wave};
-use crate::error::Result;
+use super::kernel::Kernel;
+use super::transform::Transform;
+use crate::error::{Error, Result};
 use crate::mesh::Face;
 use crate::petsc::Cholesky;
 
@@ -28,13 +29,15 @@ enum Form<const D: usize> {
         /// See [`Face::checkerboard`].
         signs: Vec<f64>,
     },
-    /// Block-circulant: one product is a Fourier transform there and back, and memory is that of D columns.
+    /// Block-circulant: one product is a Fourier transform there and back.
     Periodic {
         transform: Transform<D>,
         /// C of each wave vector.
-        waves: Vec<SMatrix<f64, D, D>>,
-        /// The columns of the components of the first node.
-        first: [Vec<f64>; D],
+        kernel: Kernel<D>,
+        /// What a node does under a force on itself.
+        own: SMatrix<f64, D, D>,
+        /// The columns of the components of the first node, where entries are asked for.
+        first: OnceCell<[Vec<f64>; D]>,
     },
 }
 
@@ -94,21 +97,21 @@ impl<const D: usize> Compliance<D> {
     }
 
     /// Of a periodic layer, with C of each of its waves.
-    pub fn of_periodic_layer(transform: Transform<D>, waves: Vec<SMatrix<f64, D, D>>) -> Result<Self> {
+    pub fn of_periodic_layer(transform: Transform<D>, kernel: Kernel<D>) -> Self {
         let order = D * transform.nodes();
-        let mut first = [const { Vec::new() }; D];
-        for (component, first) in first.iter_mut().enumerate() {
-            let mut force = vec![0.0; order];
-            force[component] = 1.0;
-            *first = response(&transform, &waves, (&force, 0..D))?;
-        }
-        Ok(Self::new(order, Form::Periodic { transform, waves, first }))
+        // The others cancel among waves that mirror each other.
+        let of_itself = |i: usize| {
+            let all = (0..kernel.len()).map(|wave| transform.stands_for(wave) * kernel.entry(wave, i, i));
+            all.sum::<f64>() / transform.nodes() as f64
+        };
+        let own = SMatrix::from_fn(|i, j| if i == j { of_itself(i) } else { 0.0 });
+        Self::new(order, Form::Periodic { transform, kernel, own, first: OnceCell::new() })
     }
 
     /// C of each wave vector, and the transform; none where the face is not that of a periodic layer.
-    pub fn waves(&self) -> Option<(&Transform<D>, &[SMatrix<f64, D, D>])> {
+    pub fn waves(&self) -> Option<(&Transform<D>, &Kernel<D>)> {
         match &self.form {
-            Form::Periodic { transform, waves, .. } => Some((transform, waves)),
+            Form::Periodic { transform, kernel, .. } => Some((transform, kernel)),
             Form::Dense { .. } => None,
         }
     }
@@ -137,7 +140,8 @@ impl<const D: usize> Compliance<D> {
     fn entry(&self, row: usize, column: usize) -> f64 {
         match &self.form {
             Form::Dense { values, .. } => values[column * self.order + row],
-            Form::Periodic { transform, first, .. } => {
+            Form::Periodic { transform, kernel, first, .. } => {
+                let first = first.get_or_init(|| columns_of_a_node(transform, kernel));
                 first[column % D][D * transform.apart(row / D, column / D) + row % D]
             }
         }
@@ -159,26 +163,48 @@ impl<const D: usize> Compliance<D> {
                     }
                 }
             }
-            Form::Periodic { transform, waves, .. } => {
+            Form::Periodic { .. } => {
                 let mut all = vec![0.0; self.order];
                 forces.for_each(|(place, force)| all[place] += force);
                 if all.iter().any(|force| *force != 0.0) {
-                    let moved = response(transform, waves, (&all, components))?;
-                    u.iter_mut().zip(moved).for_each(|(u, more)| *u += more);
+                    self.displace(&mut all, components.clone())?;
+                    let moved = all.chunks_exact(D).zip(u.chunks_exact_mut(D));
+                    moved
+                        .for_each(|(more, u)| components.clone().for_each(|component| u[component] += more[component]));
                 }
             }
         }
         Ok(())
     }
 
+    /// values = C values for forces on the nodes of a periodic layer, of each node no more than the `components`: the others are left
+    /// as they are. No other face knows this.
+    pub fn displace(&self, values: &mut [f64], components: Range<usize>) -> Result<()> {
+        let Form::Periodic { transform, kernel, .. } = &self.form else {
+            return Err(Error::Internal("this face has no transform".into()));
+        };
+        let normal = D - 1..D;
+        match components == normal && only_normal::<D>(values) {
+            true => transform.filter(values, (normal.clone(), normal), |wave, w| kernel.act_normally(wave, w)),
+            false => transform.filter(values, (0..D, components), |wave, w| kernel.act(wave, w)),
+        }
+    }
+
+    /// How many Fourier transforms of one component its products took, there or back.
+    pub fn transforms(&self) -> usize {
+        self.waves().map_or(0, |(transform, _)| transform.counted())
+    }
+
     /// The displacement of node i under unit forces on node j, m per N/m.
     pub fn block(&self, i: usize, j: usize) -> SMatrix<f64, D, D> {
         let mut block = SMatrix::<f64, D, D>::zeros();
         let (source, first) = match &self.form {
+            Form::Periodic { own, .. } if i == j => return *own,
             Form::Dense { values, .. } => {
                 (D * i, (0..D).map(|k| &values[(D * j + k) * self.order..]).collect::<Vec<_>>())
             }
-            Form::Periodic { transform, first, .. } => {
+            Form::Periodic { transform, kernel, first, .. } => {
+                let first = first.get_or_init(|| columns_of_a_node(transform, kernel));
                 (D * transform.apart(i, j), first.iter().map(|column| &column[..]).collect())
             }
         };
@@ -195,12 +221,7 @@ impl<const D: usize> Compliance<D> {
             Form::Dense { values, signs } => {
                 (0..D).map(|k| checkerboard(values, (self.order, D), signs, k)).fold(f64::INFINITY, f64::min)
             }
-            Form::Periodic { waves, .. } => {
-                let smallest = |c: &SMatrix<f64, D, D>| {
-                    DMatrix::from_column_slice(D, D, c.as_slice()).symmetric_eigenvalues().min()
-                };
-                waves.iter().map(smallest).fold(f64::INFINITY, f64::min)
-            }
+            Form::Periodic { kernel, .. } => kernel.smallest(),
         })
     }
 }
@@ -220,13 +241,19 @@ fn checkerboard(values: &[f64], (order, components): (usize, usize), signs: &[f6
     }
 }
 
-/// The displacements of a periodic face under forces on it.
-fn response<const D: usize>(
-    transform: &Transform<D>,
-    waves: &[SMatrix<f64, D, D>],
-    (forces, components): (&[f64], Range<usize>),
-) -> Result<Vec<f64>> {
-    let mut w = transform.forward(forces)?;
-    w.iter_mut().zip(waves).for_each(|(w, c): (&mut Wave<D>, _)| *w = c * *w);
-    transform.inverse_of(w.iter(), components)
+/// The columns of the components of the first node; not numbers where the transform fails, which it does not.
+fn columns_of_a_node<const D: usize>(transform: &Transform<D>, kernel: &Kernel<D>) -> [Vec<f64>; D] {
+    std::array::from_fn(|component| {
+        let mut values = vec![0.0; D * transform.nodes()];
+        values[component] = 1.0;
+        match transform.filter(&mut values, (0..D, 0..D), |wave, w| kernel.act(wave, w)) {
+            Ok(()) => values,
+            Err(_) => vec![f64::NAN; D * transform.nodes()],
+        }
+    })
+}
+
+/// Whether there is nothing along the face.
+fn only_normal<const D: usize>(values: &[f64]) -> bool {
+    values.chunks_exact(D).all(|node| node[..D - 1].iter().all(|value| *value == 0.0))
 }

@@ -86,7 +86,8 @@ impl<const D: usize> Response<D> for Following<D> {
 
     fn work(&self) -> Work {
         let memory_fields = self.relaxation.as_ref().map_or(0, |relaxation| relaxation.arms.len());
-        Work { memory_fields, ..Work::default() }
+        let transforms = self.compliance.as_ref().map_or(0, |compliance| compliance.transforms());
+        Work { memory_fields, transforms, ..Work::default() }
     }
 
     fn keep_account(&mut self, layout: &Vector) -> Result<()> {

@@ -7,6 +7,7 @@ use nalgebra::SMatrix;
 use super::super::body::{Body, Region, Solid};
 use super::super::{BulkFields, Work};
 use super::compliance::Compliance;
+use super::kernel::Kernel;
 use super::remembering::{Inside, Solvers};
 use super::sparse::unprepared;
 use super::transform::{Transform, Wave};
@@ -58,8 +59,8 @@ impl<const D: usize> PeriodicColumn<D> {
     /// The compliance of the face at the instantaneous moduli, of a bulk of one part.
     pub fn compliance(&self) -> Result<Compliance<D>> {
         let transform = self.transform();
-        let waves = self.waves(&transform)?;
-        Compliance::of_periodic_layer(transform, waves)
+        let kernel = Kernel::new(self.waves(&transform)?.into_iter());
+        Ok(Compliance::of_periodic_layer(transform, kernel))
     }
 
     /// That of each wave vector.
@@ -95,7 +96,7 @@ fn vector<const D: usize>(waves: &[Wave<D>], transform: &Transform<D>, body: &Bo
     let mut vector = body.vector()?;
     let mut values = vector.view_mut()?;
     for row in 0..rows {
-        let of_row = transform.inverse(waves.iter().skip(row).step_by(rows))?;
+        let of_row = transform.inverse(|wave| &waves[wave * rows + row])?;
         for (column, node) in of_row.chunks_exact(D).enumerate() {
             // Nodes run column by column, downward in each, with the clamped one last.
             if let Some(local) = numbering.local((column * (rows + 1) + row) as u32) {
@@ -220,8 +221,8 @@ impl<const D: usize> Inside<D> for Layered<D> {
             let secant = |series: &Option<Series>| series.as_ref().map_or(1.0, |series| series.secant(&factors));
             let secants: Vec<f64> = relaxations.series.iter().map(secant).collect();
             let elimination = Elimination::new(&Operator::sum(parts, &secants))?;
-            let waves = elimination.face().collect();
-            Ok(Solver { compliance: Compliance::of_periodic_layer(transform.clone(), waves)?, elimination })
+            let kernel = Kernel::new(elimination.face());
+            Ok(Solver { compliance: Compliance::of_periodic_layer(transform.clone(), kernel), elimination })
         })?;
         self.swept.fill(Wave::zeros());
         for part in 0..self.parts.len() {
@@ -234,7 +235,8 @@ impl<const D: usize> Inside<D> for Layered<D> {
         }
         let elimination = &self.solvers.current().ok_or_else(unprepared)?.elimination;
         elimination.sweep(&mut self.swept);
-        self.face = self.transform.inverse(elimination.at_face(&self.swept).iter())?;
+        let at_face = elimination.at_face(&self.swept);
+        self.face = self.transform.inverse(|wave| &at_face[wave])?;
         Ok(())
     }
 
@@ -247,7 +249,8 @@ impl<const D: usize> Inside<D> for Layered<D> {
     }
 
     fn work(&self) -> Work {
-        Work { memory_fields: self.elongations.len(), ..Work::default() }
+        let transforms = self.transform.counted();
+        Work { memory_fields: self.elongations.len(), transforms, ..Work::default() }
     }
 
     fn keep_account(&mut self) {

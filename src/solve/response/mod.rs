@@ -6,6 +6,7 @@
 mod compliance;
 mod following;
 mod interior;
+mod kernel;
 mod layered;
 mod remembering;
 mod sparse;
@@ -22,6 +23,7 @@ use crate::snapshot::{NaturalOrder, Snapshot};
 pub use compliance::Compliance;
 pub use following::{Following, Relaxation};
 pub use interior::Interior;
+pub use kernel::Kernel;
 pub use layered::{Layered, PeriodicColumn, Relaxations};
 pub use remembering::{Inside, Remembering};
 pub use sparse::Sparse;

@@ -1,7 +1,13 @@
 //! The Fourier transform of the nodes of a periodic face.
+//!
+//! Along the last axis it is that of real numbers, line by line; across the lines that of complex ones, in tiles of a few columns that
+//! stay in the cache: gathered, transformed, multiplied by whatever acts on waves, transformed back and put where they came from.
+//! So a product with a kernel passes four times over what it transforms, and nothing is held twice.
 
+use std::cell::{Cell, RefCell};
 use std::f64::consts::PI;
 use std::ops::Range;
+use std::rc::Rc;
 use std::sync::Arc;
 
 use nalgebra::SMatrix;
@@ -15,10 +21,18 @@ use crate::error::{Error, Result};
 /// one of them per row from the face down.
 pub type Wave<const D: usize> = SMatrix<f64, D, 2>;
 
+/// (v, u_z) of one wave vector.
+type Components<const D: usize> = [Complex<f64>; D];
+
+/// Columns that are transformed across the lines together: whole cache lines of each line.
+const TILE: usize = 8;
+/// Numbers between one column of a tile and the next beyond their length: powers of two would share their places in the cache.
+const APART: usize = 4;
+
 /// The transform of a row of nodes: along its last axis that of real numbers, along the one before it that of complex ones.
 ///
 /// Wave (k, l), l = 0 to columns/2 of the last axis and k = 0 to lines - 1 of the other (1 in the plane), is at l times the lines
-/// plus k; what is left out is the complex conjugate of what there is.
+/// plus k; what is left out is the complex conjugate of what there is. Clones count together and share their room.
 #[derive(Clone)]
 pub struct Transform<const D: usize> {
     lines: usize,
@@ -27,6 +41,18 @@ pub struct Transform<const D: usize> {
     inverse: Arc<dyn ComplexToReal<f64>>,
     /// Across the lines, there and back.
     across: [Arc<dyn Fft<f64>>; 2],
+    counted: Rc<Cell<usize>>,
+    room: Rc<RefCell<Room<D>>>,
+}
+
+/// Where it is done, kept from one time to the next: memory that is asked for anew is cleared page by page, which takes as long.
+struct Room<const D: usize> {
+    /// Of each component, line by line, those that were ever needed.
+    spectra: [Vec<Complex<f64>>; D],
+    /// Of each component.
+    tile: [Vec<Complex<f64>>; D],
+    row: Vec<f64>,
+    scratch: Vec<Complex<f64>>,
 }
 
 impl<const D: usize> Transform<D> {
@@ -35,12 +61,22 @@ impl<const D: usize> Transform<D> {
         let columns = counts.last().copied().unwrap_or(1);
         let lines = counts.iter().rev().skip(1).product();
         let (mut real, mut complex) = (RealFftPlanner::new(), FftPlanner::new());
+        let (forward, inverse) = (real.plan_fft_forward(columns), real.plan_fft_inverse(columns));
+        let across = [complex.plan_fft_forward(lines), complex.plan_fft_inverse(lines)];
+        let room = Room {
+            spectra: [const { Vec::new() }; D],
+            tile: [const { Vec::new() }; D],
+            row: Vec::new(),
+            scratch: Vec::new(),
+        };
         Self {
             lines,
             columns,
-            forward: real.plan_fft_forward(columns),
-            inverse: real.plan_fft_inverse(columns),
-            across: [complex.plan_fft_forward(lines), complex.plan_fft_inverse(lines)],
+            forward,
+            inverse,
+            across,
+            counted: Rc::new(Cell::new(0)),
+            room: Rc::new(RefCell::new(room)),
         }
     }
 
@@ -51,7 +87,12 @@ impl<const D: usize> Transform<D> {
 
     /// How many wave vectors there are.
     pub fn waves(&self) -> usize {
-        self.lines * (self.columns / 2 + 1)
+        self.lines * self.half()
+    }
+
+    /// How many transforms of one component, there or back, were made.
+    pub fn counted(&self) -> usize {
+        self.counted.get()
     }
 
     /// The node that is as far from the first as node i is from node j.
@@ -77,73 +118,238 @@ impl<const D: usize> Transform<D> {
     /// The waves of the components of each node; a component that is nothing costs nothing.
     pub fn forward(&self, values: &[f64]) -> Result<Vec<Wave<D>>> {
         let mut waves = vec![Wave::zeros(); self.waves()];
-        let mut row = self.forward.make_input_vec();
-        let half = self.columns / 2 + 1;
-        let [mut by_line, mut by_wave] = [0; 2].map(|_| vec![Complex::default(); self.waves()]);
-        let mut scratch = self.forward.make_scratch_vec();
-        for component in (0..D).filter(|&component| values.iter().skip(component).step_by(D).any(|value| *value != 0.0))
-        {
-            for (of_line, spectrum) in values.chunks_exact(D * self.columns).zip(by_line.chunks_exact_mut(half)) {
-                row.iter_mut().zip(of_line.chunks_exact(D)).for_each(|(row, node)| *row = node[component]);
-                self.forward.process_with_scratch(&mut row, spectrum, &mut scratch).map_err(transform_failed)?;
+        let mut room = self.room(0..D);
+        let from = some_of(values, 0..D);
+        self.lines_there::<D>(values, &from, &mut room)?;
+        self.across_lines(&mut room, (&from, &[false; D]), |k, w| {
+            for (component, c) in w.iter().enumerate() {
+                (waves[k][(component, 0)], waves[k][(component, 1)]) = (c.re, c.im);
             }
-            let all = match self.lines {
-                1 => &by_line,
-                lines => {
-                    transpose::transpose(&by_line, &mut by_wave, half, lines);
-                    self.across[0].process(&mut by_wave);
-                    &by_wave
-                }
-            };
-            for (wave, c) in waves.iter_mut().zip(all) {
-                // v = -i u
-                let part = if component + 1 < D { [c.im, -c.re] } else { [c.re, c.im] };
-                (wave[(component, 0)], wave[(component, 1)]) = (part[0], part[1]);
-            }
-        }
+        });
         Ok(waves)
     }
 
     /// The components of each node.
-    pub fn inverse<'a>(&self, waves: impl Iterator<Item = &'a Wave<D>> + Clone) -> Result<Vec<f64>> {
-        self.inverse_of(waves, 0..D)
+    pub fn inverse<'a>(&self, mut waves: impl FnMut(usize) -> &'a Wave<D>) -> Result<Vec<f64>> {
+        let mut values = vec![0.0; D * self.nodes()];
+        let mut room = self.room(0..D);
+        let all = [true; D];
+        self.across_lines(&mut room, (&[false; D], &all), |k, w| {
+            let wave = waves(k);
+            for (component, c) in w.iter_mut().enumerate() {
+                *c = Complex::new(wave[(component, 0)], wave[(component, 1)]);
+            }
+        });
+        self.lines_back::<D>(&mut values, &all, &mut room)?;
+        Ok(values)
     }
 
-    /// Some of the components of each node; the others are left at zero.
-    pub fn inverse_of<'a>(
+    /// The components `to` of each node become those of waves that `act` made of the waves of the components `from`, of which it is
+    /// given the number and the values; the other components are left as they are. Components that are nothing cost nothing, and of
+    /// nothing comes nothing.
+    pub fn filter(
         &self,
-        waves: impl Iterator<Item = &'a Wave<D>> + Clone,
-        components: Range<usize>,
-    ) -> Result<Vec<f64>> {
-        let mut values = vec![0.0; D * self.nodes()];
-        let (mut row, mut scratch) = (self.inverse.make_output_vec(), self.inverse.make_scratch_vec());
-        let half = self.columns / 2 + 1;
-        let [mut by_line, mut by_wave] = [0; 2].map(|_| vec![Complex::default(); self.waves()]);
+        values: &mut [f64],
+        (from, to): (Range<usize>, Range<usize>),
+        act: impl Fn(usize, &mut Components<D>),
+    ) -> Result<()> {
+        let mut room = self.room(from.start.min(to.start)..from.end.max(to.end));
+        let from = some_of(values, from);
+        if from == [false; D] {
+            values.chunks_exact_mut(D).for_each(|node| node[to.clone()].fill(0.0));
+            return Ok(());
+        }
+        let to = std::array::from_fn(|component| to.contains(&component));
+        self.lines_there::<D>(values, &from, &mut room)?;
+        self.across_lines(&mut room, (&from, &to), act);
+        self.lines_back::<D>(values, &to, &mut room)
+    }
+
+    /// The same of a list of last components alone: each wave times a number.
+    pub fn filter_last(&self, values: &mut [f64], factor: impl Fn(usize) -> f64) -> Result<()> {
+        if values.iter().all(|value| *value == 0.0) {
+            return Ok(());
+        }
+        let last = std::array::from_fn(|component| component + 1 == D);
+        let mut room = self.room(D - 1..D);
+        self.lines_there::<1>(values, &last, &mut room)?;
+        self.across_lines(&mut room, (&last, &last), |wave, w| w[D - 1] *= factor(wave));
+        self.lines_back::<1>(values, &last, &mut room)
+    }
+
+    fn half(&self) -> usize {
+        self.columns / 2 + 1
+    }
+
+    /// Of one column of a tile to the next.
+    fn stride(&self) -> usize {
+        if self.lines > 1 { self.lines + APART } else { 1 }
+    }
+
+    /// The room, with places for so many components.
+    fn room(&self, components: Range<usize>) -> std::cell::RefMut<'_, Room<D>> {
+        let mut room = self.room.borrow_mut();
+        let nothing = Complex::default();
         for component in components {
-            let first = if self.lines == 1 { &mut by_line } else { &mut by_wave };
-            for (c, wave) in first.iter_mut().zip(waves.clone()) {
-                let (re, im) = (wave[(component, 0)], wave[(component, 1)]);
-                *c = if component + 1 < D { Complex::new(-im, re) } else { Complex::new(re, im) };
+            room.spectra[component].resize(self.waves(), nothing);
+            room.tile[component].resize(TILE * self.stride(), nothing);
+        }
+        let scratch = [self.forward.get_scratch_len(), self.inverse.get_scratch_len()]
+            .into_iter()
+            .chain(self.across.iter().map(|across| across.get_inplace_scratch_len()))
+            .max()
+            .unwrap_or(0);
+        room.scratch.resize(scratch, nothing);
+        room.row.resize(self.columns, 0.0);
+        room
+    }
+
+    /// Counts a transform of each of these components.
+    fn count(&self, components: &[bool; D]) {
+        self.counted.set(self.counted.get() + components.iter().filter(|component| **component).count());
+    }
+
+    /// Along each line, of the last `S` components to a node.
+    fn lines_there<const S: usize>(&self, values: &[f64], from: &[bool; D], room: &mut Room<D>) -> Result<()> {
+        self.count(from);
+        let half = self.half();
+        let Room { spectra, row, scratch, .. } = room;
+        let scratch = &mut scratch[..self.forward.get_scratch_len()];
+        for (line, nodes) in values.chunks_exact(S * self.columns).enumerate() {
+            for component in (0..D).filter(|&component| from[component]) {
+                let place = component + S - D;
+                row.iter_mut().zip(nodes.chunks_exact(S)).for_each(|(row, node)| *row = node[place]);
+                let spectrum = &mut spectra[component][line * half..][..half];
+                self.forward.process_with_scratch(row, spectrum, scratch).map_err(transform_failed)?;
             }
-            if self.lines > 1 {
-                self.across[1].process(&mut by_wave);
-                transpose::transpose(&by_wave, &mut by_line, self.lines, half);
-            }
-            for (spectrum, of_line) in by_line.chunks_exact_mut(half).zip(values.chunks_exact_mut(D * self.columns)) {
+        }
+        Ok(())
+    }
+
+    /// Back along each line.
+    fn lines_back<const S: usize>(&self, values: &mut [f64], to: &[bool; D], room: &mut Room<D>) -> Result<()> {
+        self.count(to);
+        let (half, share) = (self.half(), 1.0 / self.nodes() as f64);
+        let Room { spectra, row, scratch, .. } = room;
+        let scratch = &mut scratch[..self.inverse.get_scratch_len()];
+        for (line, nodes) in values.chunks_exact_mut(S * self.columns).enumerate() {
+            for component in (0..D).filter(|&component| to[component]) {
+                let spectrum = &mut spectra[component][line * half..][..half];
                 // Real but for round-off.
                 spectrum[0].im = 0.0;
                 if self.columns.is_multiple_of(2) {
                     spectrum[half - 1].im = 0.0;
                 }
-                self.inverse.process_with_scratch(spectrum, &mut row, &mut scratch).map_err(transform_failed)?;
-                let nodes = of_line.chunks_exact_mut(D).zip(&row);
-                nodes.for_each(|(node, row)| node[component] = row / self.nodes() as f64);
+                self.inverse.process_with_scratch(spectrum, row, scratch).map_err(transform_failed)?;
+                let place = component + S - D;
+                nodes.chunks_exact_mut(S).zip(row.iter()).for_each(|(node, row)| node[place] = row * share);
             }
         }
-        Ok(values)
+        Ok(())
     }
+
+    /// Across the lines, there with the components `from` and back with those of `to`, and between that what acts on each wave; of
+    /// components that do not come from anywhere it is given nothing.
+    fn across_lines(
+        &self,
+        room: &mut Room<D>,
+        (from, to): (&[bool; D], &[bool; D]),
+        mut act: impl FnMut(usize, &mut Components<D>),
+    ) {
+        let (lines, half, stride) = (self.lines, self.half(), self.stride());
+        let Room { spectra, tile, scratch, .. } = room;
+        let [there, back] = &self.across;
+        for first in (0..half).step_by(TILE) {
+            let width = TILE.min(half - first);
+            for component in (0..D).filter(|&component| from[component]) {
+                let tile = &mut tile[component];
+                for (line, spectrum) in spectra[component].chunks_exact(half).enumerate() {
+                    let places = tile[line..].iter_mut().step_by(stride);
+                    places.zip(&spectrum[first..][..width]).for_each(|(place, c)| *place = *c);
+                }
+                if lines > 1 {
+                    let scratch = &mut scratch[..there.get_inplace_scratch_len()];
+                    let columns = tile.chunks_mut(stride).take(width);
+                    columns.for_each(|column| there.process_with_scratch(&mut column[..lines], scratch));
+                }
+            }
+            for (column, line) in (0..width).flat_map(|column| (0..lines).map(move |line| (column, line))) {
+                let place = column * stride + line;
+                let mut w: Components<D> =
+                    std::array::from_fn(|i| if from[i] { wave(i + 1 < D, tile[i][place]) } else { Complex::default() });
+                act((first + column) * lines + line, &mut w);
+                for i in (0..D).filter(|&i| to[i]) {
+                    tile[i][place] = node(i + 1 < D, w[i]);
+                }
+            }
+            for component in (0..D).filter(|&component| to[component]) {
+                let tile = &mut tile[component];
+                if lines > 1 {
+                    let scratch = &mut scratch[..back.get_inplace_scratch_len()];
+                    let columns = tile.chunks_mut(stride).take(width);
+                    columns.for_each(|column| back.process_with_scratch(&mut column[..lines], scratch));
+                }
+                for (line, spectrum) in spectra[component].chunks_exact_mut(half).enumerate() {
+                    let places = tile[line..].iter().step_by(stride);
+                    spectrum[first..][..width].iter_mut().zip(places).for_each(|(c, place)| *c = *place);
+                }
+            }
+        }
+    }
+}
+
+/// v = -i u along the face.
+fn wave(along: bool, c: Complex<f64>) -> Complex<f64> {
+    if along { Complex::new(c.im, -c.re) } else { c }
+}
+
+/// u = i v.
+fn node(along: bool, c: Complex<f64>) -> Complex<f64> {
+    if along { Complex::new(-c.im, c.re) } else { c }
+}
+
+/// Which of these components are not nothing.
+fn some_of<const D: usize>(values: &[f64], components: Range<usize>) -> [bool; D] {
+    let some = |component: usize| values.iter().skip(component).step_by(D).any(|value| *value != 0.0);
+    std::array::from_fn(|component| components.contains(&component) && some(component))
 }
 
 fn transform_failed(error: realfft::FftError) -> Error {
     Error::Internal(format!("Fourier transform: {error}"))
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    /// Waves that nothing acts on are the values, of all components, of some and of the last alone, for even and odd counts beside and
+    /// beyond a tile; each component counts once there and once back, and one that is nothing only back.
+    #[test]
+    fn what_nothing_acts_on_stays() {
+        for counts in [[7, 10], [10, 7], [16, 18], [3, 33], [2, 2]] {
+            let transform = Transform::<3>::new(&counts);
+            let values: Vec<f64> = (0..3 * transform.nodes()).map(|i| ((7 * i + 3) % 11) as f64 - 4.0).collect();
+            let close = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-14);
+            let mut all = values.clone();
+            transform.filter(&mut all, (0..3, 0..3), |_, _| {}).unwrap();
+            assert!(close(&all, &values) && transform.counted() == 6);
+            let mut some = values.clone();
+            transform.filter(&mut some, (0..3, 1..2), |_, w| w[1] *= 2.0).unwrap();
+            let doubled = |(i, value): (usize, &f64)| if i % 3 == 1 { 2.0 * value } else { *value };
+            assert!(close(&some, &values.iter().enumerate().map(doubled).collect::<Vec<_>>()));
+            let mut last: Vec<f64> = values.iter().skip(2).step_by(3).copied().collect();
+            transform.filter_last(&mut last, |_| 1.0).unwrap();
+            assert!(close(&last, &values.iter().skip(2).step_by(3).copied().collect::<Vec<_>>()));
+            let waves = transform.forward(&values).unwrap();
+            assert!(close(&transform.inverse(|k| &waves[k]).unwrap(), &values));
+            let before = transform.counted();
+            let mut normal: Vec<f64> =
+                values.iter().enumerate().map(|(i, v)| if i % 3 == 2 { *v } else { 0.0 }).collect();
+            transform.filter(&mut normal, (0..3, 0..3), |_, _| {}).unwrap();
+            assert_eq!(transform.counted() - before, 4);
+            transform.filter(&mut vec![0.0; 3 * transform.nodes()], (0..3, 0..3), |_, w| w[0].re = 1.0).unwrap();
+            assert_eq!(transform.counted() - before, 4);
+        }
+    }
 }

@@ -42,9 +42,16 @@ impl<const D: usize> Behind<'_, D> {
     }
 
     /// The displacements of the nodes under forces on them, of each no more than the `components`, m.
-    fn displacements(&self, forces: &[f64], components: Range<usize>) -> Result<Vec<f64>> {
-        let mut u = vec![0.0; forces.len()];
-        self.compliance.add_displacements(forces.iter().copied().enumerate(), &mut u, components)?;
+    fn displacements(&self, forces: Vec<f64>, components: Range<usize>) -> Result<Vec<f64>> {
+        let mut u = if self.compliance.waves().is_some() {
+            let mut u = forces;
+            self.compliance.displace(&mut u, components)?;
+            u
+        } else {
+            let mut u = vec![0.0; forces.len()];
+            self.compliance.add_displacements(forces.into_iter().enumerate(), &mut u, components)?;
+            u
+        };
         u.iter_mut().for_each(|u| *u /= self.secant);
         Ok(u)
     }
@@ -58,7 +65,7 @@ impl<const D: usize> Behind<'_, D> {
     /// The displacements of the nodes under tractions, from what they do without, m, and the forces, N/m.
     pub fn displaced(&self, tractions: &[SVector<f64, D>], free: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         let forces = self.forces(tractions);
-        let mut u = self.displacements(&forces, 0..D)?;
+        let mut u = self.displacements(forces.clone(), 0..D)?;
         u.iter_mut().zip(free).for_each(|(u, free)| *u += free);
         Ok((u, forces))
     }
@@ -66,7 +73,7 @@ impl<const D: usize> Behind<'_, D> {
     /// The motion of the points under tractions, m, as far as the laws ask for it.
     pub fn moves(&self, tractions: &[SVector<f64, D>]) -> Result<Vec<SVector<f64, D>>> {
         let components = if self.is_normal_alone() { D - 1..D } else { 0..D };
-        Ok(self.motions(&self.displacements(&self.forces(tractions), components)?, tractions))
+        Ok(self.motions(&self.displacements(self.forces(tractions), components)?, tractions))
     }
 
     /// What displacements of the nodes are at the points under tractions, with what gives way where one direction is held.
@@ -168,6 +175,11 @@ impl<const D: usize> Behind<'_, D> {
         let Placement { approach, dt, .. } = placement;
         let way = placement.way();
         let falls = self.falls(dt);
+        // All nodes of a flat periodic face are alike.
+        let alike =
+            self.compliance.waves().is_some() && interface.points().are_flat() && !interface.points().share_nodes();
+        let moduli = |i: usize| self.moduli(i, interface.penalty());
+        let first = alike.then(|| moduli(0));
         let site = |(i, point): (usize, &Point<D>)| {
             let past = interface.points().at(i, accepted.displacement());
             let elastic = interface.friction().map_or(SVector::zeros(), |law| interface.states()[i].elastic(law));
@@ -182,7 +194,7 @@ impl<const D: usize> Behind<'_, D> {
                 drive: way + past + elastic,
                 elastic,
                 slid,
-                moduli: self.moduli(i, interface.penalty()).above(falls(slid)),
+                moduli: first.unwrap_or_else(|| moduli(i)).above(falls(slid)),
                 lengths: [
                     moved.max(approach.abs()).max(height.min(2.0 * approach.abs())),
                     moved.max(past.norm()).max(way.norm()),

@@ -11,9 +11,10 @@
 //! C grows like the wavelength, so that what the borders of contact and stick take from this costs GMRES a few iterations that
 //! hardly grow with the number of nodes; one iteration costs n log n. Where all slips there is nothing to transform for r.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
+use rustfft::num_complex::Complex;
 
-use super::super::response::{Compliance, Transform};
+use super::super::response::{Compliance, Kernel};
 use super::linear::Linearised;
 use crate::error::Result;
 
@@ -24,70 +25,95 @@ const SOFTNESS: f64 = 0.3;
 /// Shares of stick below which a point is taken to slide freely.
 const LEAST_SHARE: f64 = 0.1;
 
-/// M^-1.
-pub struct Fourier<const D: usize> {
-    transform: Transform<D>,
-    /// Per wave vector, for r and for dp.
-    inverses: Vec<SMatrix<f64, D, D>>,
+/// M^-1: what it is made of beside the compliance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fourier {
+    /// 1 - theta, and theta rho_n and rho_t times what a force of the compliance is of a traction.
+    soft: f64,
+    stiff: f64,
+    grip: f64,
+    kappa: f64,
     sticks: bool,
 }
 
-impl<const D: usize> Fourier<D> {
+impl Fourier {
     /// For the points of a flat face with equal `weight`s, and what their laws are; none where the compliance is not that of a
     /// periodic layer.
-    pub fn new(compliance: &Compliance<D>, secant: f64, points: &[Linearised<D>], weight: f64) -> Option<Self> {
-        let (transform, waves) = compliance.waves()?;
+    pub fn new<const D: usize>(
+        compliance: &Compliance<D>,
+        secant: f64,
+        points: &[Linearised<D>],
+        weight: f64,
+    ) -> Option<Self> {
+        compliance.waves()?;
         let per_traction = weight / secant;
-        let active: Vec<_> = points.iter().filter(|point| point.active).collect();
-        let [soft, stiff] = normal(&active);
-        let rho = active.iter().map(|point| modulus(point)).fold(0.0, f64::max);
+        let active = || points.iter().filter(|point| point.active);
+        let [soft, stiff] = normal(active);
+        let rho = active().map(modulus).fold(0.0, f64::max);
         // Along the slip and, in space, across it, where a point that slides is soft too.
-        let slacks = || active.iter().flat_map(|point| point.slack.into_iter().take(D - 1));
-        let shares = || slacks().map(|slack| (share(slack), 1.0 - share(slack)));
+        let shares = || {
+            active()
+                .flat_map(|point| point.slack.into_iter().take(D - 1))
+                .map(|slack| (share(slack), 1.0 - share(slack)))
+        };
         let (give, square) =
             shares().fold((0.0, 0.0), |(give, square), (th, slack)| (give + th * slack, square + th * th));
         // Where all slides there is next to nothing to transform.
         let sticks = shares().any(|(th, _)| th > LEAST_SHARE);
         let kappa = if sticks { SOFTNESS * give / square } else { 0.0 };
-        let inverse = |c: &SMatrix<f64, D, D>| {
-            let system = SMatrix::from_fn(|i, j| match (i + 1 == D, j + 1 == D) {
-                (true, true) => soft + stiff * per_traction * c[(i, j)],
-                (false, false) if sticks => rho * per_traction * c[(i, j)] + if i == j { kappa } else { 0.0 },
-                _ => f64::from(u8::from(i == j)),
-            });
-            SMatrix::try_inverse(system)
-        };
-        let inverses = waves.iter().map(inverse).collect::<Option<_>>()?;
-        Some(Self { transform: transform.clone(), inverses, sticks })
+        Some(Self { soft, stiff: stiff * per_traction, grip: rho * per_traction, kappa, sticks })
     }
 
-    /// dt = M^-1 b
-    pub fn solve(&self, points: &[Linearised<D>], b: &[SVector<f64, D>]) -> Result<Vec<SVector<f64, D>>> {
-        let combined: Vec<_> = points.iter().zip(b).map(|(point, b)| point.combined(b)).collect();
-        let mut loads = Vec::with_capacity(D * points.len());
-        for (point, b) in points.iter().zip(&combined) {
-            let load = match point.active {
-                true => self.held(point, point.tangential(b)) + point.normal * point.normal.dot(b),
-                false => SVector::zeros(),
-            };
-            loads.extend(load.iter());
+    /// What it makes of a wave.
+    fn act<const D: usize>(&self, kernel: &Kernel<D>, wave: usize, w: &mut [Complex<f64>; D]) {
+        w[D - 1] /= self.soft + self.stiff * kernel.entry(wave, D - 1, D - 1);
+        if !self.sticks {
+            return;
         }
-        let mut waves = self.transform.forward(&loads)?;
-        waves.iter_mut().zip(&self.inverses).for_each(|(wave, inverse)| *wave = inverse * *wave);
-        let solved = self.transform.inverse_of(waves.iter(), if self.sticks { 0..D } else { D - 1..D })?;
-        let of = |((point, b), y): ((&Linearised<D>, &SVector<f64, D>), &[f64])| {
+        let given = |i: usize| self.grip * kernel.entry(wave, i, i) + self.kappa;
+        if D == 2 {
+            w[0] /= given(0);
+            return;
+        }
+        let (a, b, c) = (given(0), self.grip * kernel.entry(wave, 0, 1), given(1));
+        let share = 1.0 / (a * c - b * b);
+        (w[0], w[1]) = ((w[0] * c - w[1] * b) * share, (w[1] * a - w[0] * b) * share);
+    }
+
+    /// dt = M^-1 b, in place of b.
+    pub fn solve<const D: usize>(
+        &self,
+        compliance: &Compliance<D>,
+        points: &[Linearised<D>],
+        b: &mut [f64],
+        room: &mut Vec<f64>,
+    ) -> Result<()> {
+        let Some((transform, kernel)) = compliance.waves() else { return Ok(()) };
+        room.resize(b.len(), 0.0);
+        for ((point, b), load) in points.iter().zip(b.chunks_exact_mut(D)).zip(room.chunks_exact_mut(D)) {
             if !point.active {
-                return *b;
+                load.fill(0.0);
+                continue;
             }
-            let y = SVector::from_column_slice(y);
-            let given = point.scaled(point.slack, point.tangential(b));
-            point.dragged(&(given + self.held(point, point.tangential(&y)) + point.normal * point.normal.dot(&y)))
-        };
-        Ok(points.iter().zip(&combined).zip(solved.chunks_exact(D)).map(of).collect())
+            let combined = point.combined(&SVector::from_column_slice(b));
+            let tangential = point.tangential(&combined);
+            let normal = point.normal * point.normal.dot(&combined);
+            load.copy_from_slice((self.held(point, tangential) + normal).as_slice());
+            b.copy_from_slice(point.scaled(point.slack, tangential).as_slice());
+        }
+        let components = if self.sticks { 0..D } else { D - 1..D };
+        transform.filter(room, (components.clone(), components), |wave, w| self.act(kernel, wave, w))?;
+        let active = points.iter().zip(b.chunks_exact_mut(D)).zip(room.chunks_exact(D));
+        for ((point, b), y) in active.filter(|((point, _), _)| point.active) {
+            let (given, y) = (SVector::from_column_slice(b), SVector::from_column_slice(y));
+            let held = self.held(point, point.tangential(&y)) + point.normal * point.normal.dot(&y);
+            b.copy_from_slice(point.dragged(&(given + held)).as_slice());
+        }
+        Ok(())
     }
 
     /// Th^(1/2) v of what is tangential.
-    fn held(&self, point: &Linearised<D>, v: SVector<f64, D>) -> SVector<f64, D> {
+    fn held<const D: usize>(&self, point: &Linearised<D>, v: SVector<f64, D>) -> SVector<f64, D> {
         if !self.sticks {
             return SVector::zeros();
         }
@@ -96,13 +122,15 @@ impl<const D: usize> Fourier<D> {
 }
 
 /// 1 - theta and theta rho_n: the same of all points but where they wear, each as much as it slips; then their means.
-fn normal<const D: usize>(active: &[&Linearised<D>]) -> [f64; 2] {
-    let wears = active.iter().any(|point| point.wearing != [0.0; 2]);
-    match active.first() {
+fn normal<'a, const D: usize, I: Iterator<Item = &'a Linearised<D>>>(active: impl Fn() -> I) -> [f64; 2] {
+    let wears = active().any(|point| point.wearing != [0.0; 2]);
+    match active().next() {
         None => [1.0, 0.0],
         Some(point) if !wears => [point.soft, point.stiff],
-        _ => [|point: &Linearised<D>| point.soft, |point: &Linearised<D>| point.stiff]
-            .map(|of| active.iter().map(|point| of(point)).sum::<f64>() / active.len() as f64),
+        _ => {
+            let (soft, stiff) = active().fold((0.0, 0.0), |sum, point| (sum.0 + point.soft, sum.1 + point.stiff));
+            [soft, stiff].map(|sum| sum / active().count() as f64)
+        }
     }
 }
 

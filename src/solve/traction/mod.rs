@@ -15,6 +15,7 @@
 //! nothing stiff is left in G. Newton's method on it is `linear`.
 
 mod behind;
+mod bounded;
 mod continuation;
 mod dense;
 mod fold;
@@ -34,6 +35,7 @@ use crate::interface::State;
 use crate::wear::Wear;
 
 pub use behind::Behind;
+pub use bounded::pressures;
 pub use continuation::start;
 pub use dense::Factor;
 pub use fold::jumped;

@@ -45,7 +45,9 @@ impl<const D: usize> Outcome<D> {
         laws: Laws<'_>,
     ) -> Self {
         let over = laws.held.over(&shift, sites.len());
-        for ((site, over), motion) in sites.iter().zip(&over).zip(&mut motions) {
+        for ((site, over), motion) in
+            sites.iter().zip(&over).zip(&mut motions).filter(|((_, over), _)| over.rise != 0.0)
+        {
             *motion -= site.normal * (site.normal.dot(&up()) * over.rise);
         }
         let unbalance = laws.held.unbalance(sites, (&tractions, &over), &shift);
