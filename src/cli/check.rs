@@ -33,6 +33,7 @@ pub fn run(arguments: &CheckArguments) -> Result<()> {
     let file = &arguments.scene;
     let source = Source { file: file.clone(), overrides: arguments.set.clone() };
     let scene = scene::read(&scene::open(file)?, &source)?;
+    composition::countable(&scene, file)?;
     let measured = composition::measured(&scene, file)?;
     let outline = composition::outline(&scene, file)?;
     // All unknowns are shared by as many ranks as a run may have.

@@ -28,6 +28,7 @@ pub fn outcome(scene: &Scene, done: &Done, out: &Path) -> Value {
         "pieces": counts.pieces,
         "rejected": counts.rejected,
         "newton_iterations": counts.newton,
+        "transforms": counts.work.transforms,
         "ranks": ranks,
         "wall_seconds": total.as_secs_f64(),
         "setup_seconds": setup.as_secs_f64(),
@@ -52,6 +53,7 @@ pub fn plan(scene: &Scene, outline: &Outline, warnings: &[Warning]) -> Value {
         "seconds_per_step": estimate.step,
         "seconds": estimate.step * scene.steps() as f64,
         "memory_bytes": estimate.memory,
+        "result_bytes": scene.result_bytes().map(|[_, all]| all),
         "penalty": scene.contact.stiffness().or(outline.penalty),
     })
 }

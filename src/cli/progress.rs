@@ -10,6 +10,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rustix::termios::{tcgetwinsize, tcsetwinsize};
 
 use super::launcher::terminal_of_launcher;
+use super::summary::seconds;
 use super::sweep::claim::Claim;
 use super::terminal::{is_quiet, tell};
 
@@ -35,6 +36,9 @@ pub enum Progress {
         total: usize,
         /// When the last line was printed.
         last: Instant,
+        /// When the run went on, and from which step.
+        begun: Instant,
+        from: Option<usize>,
     },
 }
 
@@ -63,7 +67,8 @@ impl Progress {
             return Self::Silent;
         }
         let Some(target) = terminal() else {
-            return Self::Lines { total, last: Instant::now() };
+            let now = Instant::now();
+            return Self::Lines { total, last: now, begun: now, from: None };
         };
         let bar = ProgressBar::with_draw_target(Some(total as u64), target);
         // Within any width, as a line that wraps leaves pieces behind.
@@ -90,11 +95,13 @@ impl Progress {
                 bar.set_position(done as u64);
                 bar.set_message(format!("{phase:.10}  N = {normal_force:.3e}  Q = {tangential_force:.3e} N/m"));
             }
-            Self::Lines { total, last } => {
+            Self::Lines { total, last, begun, from } => {
+                let from = *from.get_or_insert(done.saturating_sub(1));
                 if phase_end || last.elapsed() >= LINE_EVERY {
                     tell(format_args!(
                         "{done}/{total}  {phase}  t = {time:.4e} s  N = {normal_force:.5e}  Q = {tangential_force:.5e} N/m  \
-                         {newton} Newton"
+                         {newton} Newton{}",
+                        left(*begun, (done - from, total.saturating_sub(done)))
                     ));
                     *last = Instant::now();
                 }
@@ -108,6 +115,12 @@ impl Progress {
             bar.finish_and_clear();
         }
     }
+}
+
+/// How long the steps that are left take if they take what those that were done did; of a run that takes no time, nothing.
+fn left(begun: Instant, (done, left): (usize, usize)) -> String {
+    let rest = begun.elapsed().as_secs_f64() / done.max(1) as f64 * left as f64;
+    if left == 0 || rest < LINE_EVERY.as_secs_f64() { String::new() } else { format!("  {} left", seconds(rest)) }
 }
 
 /// Where a bar can be drawn, unless nothing is to be told: standard error when it is a terminal; under a launcher that

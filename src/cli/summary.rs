@@ -131,6 +131,7 @@ pub fn plan(scene: &Scene, outline: &Outline) -> String {
         scene.duration()
     );
     let _ = writeln!(text, "strategy:      {}", strategy(scene));
+    text += &results(scene);
     let _ = write!(
         text,
         "estimate:      {} per step, {} in all on one core; {:.1} GB of memory",
@@ -139,6 +140,30 @@ pub fn plan(scene: &Scene, outline: &Outline) -> String {
         estimate.memory / 1e9
     );
     text
+}
+
+/// How large the result file becomes, and what is left out of it unasked.
+fn results(scene: &Scene) -> String {
+    let Some([interface, all]) = scene.result_bytes() else { return String::new() };
+    let fewer = match scene.keeps_fewer_unasked() {
+        true => format!(
+            "\n{:15}one interface profile in {} steps, as all would take {}; output.interface_every says otherwise",
+            "",
+            scene.output.interface_every,
+            bytes(interface * scene.output.interface_every as f64)
+        ),
+        false => String::new(),
+    };
+    format!("results:       {} before compression, {} of it interface profiles{fewer}\n", bytes(all), bytes(interface))
+}
+
+/// Bytes for people.
+fn bytes(count: f64) -> String {
+    match count {
+        count if count < 1e6 => format!("{:.0} kB", count / 1e3),
+        count if count < 1e9 => format!("{:.0} MB", count / 1e6),
+        count => format!("{:.1} GB", count / 1e9),
+    }
 }
 
 /// The mesh in words.
@@ -200,7 +225,13 @@ pub fn outcome(scene: &Scene, done: &Done) -> String {
         rejected => format!(" ({rejected} attempts rejected)"),
     };
     let sparse = match counts.work {
-        Work { factorisations: 0, .. } => String::new(),
+        Work { factorisations: 0, transforms: 0, .. } => String::new(),
+        Work { factorisations: 0, transforms, .. } => {
+            format!(
+                ", {:.0} Fourier transforms of one component a step",
+                transforms as f64 / counts.steps.max(1) as f64
+            )
+        }
         Work { factorisations, solves, .. } => {
             format!("; {factorisations} sparse factorisation(s), {solves} solves with them")
         }

@@ -14,9 +14,9 @@ use crate::scene::{Body, Layer, Scene};
 
 /// What the program and its libraries take before they do anything, bytes.
 const PROGRAM: f64 = 5.7e7;
-/// Per node of a periodic face in space: the points and their states, what of a step is tried, GMRES; and for each arm. Measured with 128 and
-/// 256 nodes a side, as are those below.
-const FACE_NODE: f64 = 3400.0;
+/// Per node of a periodic face in space, with friction and without: the points and their states, what of a step is tried, GMRES; and for
+/// each arm. Measured with 128, 256 and 512 nodes a side; those below with 128.
+const FACE_NODE: [f64; 2] = [3700.0, 2400.0];
 const FACE_ARM: f64 = 30.0;
 /// Per node of a periodic layer in space whose interior has a memory: its elimination at two step lengths, and what is beside the arms;
 /// for each part that relaxes by itself; for each arm.
@@ -87,16 +87,19 @@ impl Estimate {
         let (nodes, rows) = (layer.face_nodes() as f64, layer.rows as f64);
         let arms =
             scene.materials.iter().map(|material| material.arms.len() + material.bulk_arms.len()).sum::<usize>() as f64;
-        let step = FACE_STEP[usize::from(scene.friction.is_none())];
+        let (step, node) = match scene.friction {
+            Some(_) => (FACE_STEP[0], FACE_NODE[0]),
+            None => (FACE_STEP[1], FACE_NODE[1]),
+        };
         match form(scene) {
             Form::Following | Form::Monolithic => {
-                Self { step: step * nodes, memory: PROGRAM + nodes * (FACE_NODE + FACE_ARM * arms) }
+                Self { step: step * nodes, memory: PROGRAM + nodes * (node + FACE_ARM * arms) }
             }
             Form::Remembering => {
                 // The shear and the bulk of each material.
                 let parts = 2.0 * scene.materials.len() as f64;
                 let of_row = WAVE_NODE + WAVE_PART * parts + WAVE_ARM * arms;
-                Self { step: nodes * (step + WAVE_STEP * rows), memory: PROGRAM + nodes * (FACE_NODE + of_row * rows) }
+                Self { step: nodes * (step + WAVE_STEP * rows), memory: PROGRAM + nodes * (node + of_row * rows) }
             }
         }
     }

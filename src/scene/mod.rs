@@ -9,6 +9,7 @@ mod document;
 mod friction;
 mod include;
 mod indenter;
+mod kept;
 mod keys;
 mod load;
 mod material;

@@ -38,6 +38,7 @@ pub fn scene(table: &Table, file: &Path) -> Result<Scene> {
     let preset = solver_section.as_ref().map(preset).transpose()?.flatten();
     let phases = phase::read_all(&root, preset)?;
     let materials = body::materials(&root, &body, super::material::loading(&phases).as_ref())?;
+    let every = super::kept::interface_every(&body, &phases);
     let mut scene = Scene {
         indenter: indenter::read(&root.section("indenter")?)?,
         contact: contact(&root.section("contact")?, &body, &materials, &phases)?,
@@ -46,7 +47,7 @@ pub fn scene(table: &Table, file: &Path) -> Result<Scene> {
         wear: root.optional_section("wear")?.as_ref().map(wear::read).transpose()?,
         phases,
         solver: solver(solver_section.as_ref(), preset)?,
-        output: output(root.optional_section("output")?.as_ref())?,
+        output: output(root.optional_section("output")?.as_ref(), every)?,
         title,
         body,
         materials,
@@ -127,8 +128,8 @@ fn solver(section: Option<&Section>, preset: Option<Preset>) -> Result<Solver> {
     })
 }
 
-fn output(section: Option<&Section>) -> Result<Output> {
-    let default = Output { interface_every: 1, bulk_at: Vec::new(), checkpoint_every: 0, energy: true };
+fn output(section: Option<&Section>, interface_every: usize) -> Result<Output> {
+    let default = Output { interface_every, bulk_at: Vec::new(), checkpoint_every: 0, energy: true };
     let Some(section) = section else { return Ok(default) };
     section.only_known()?;
     let count = |key: &str| section.optional_count(key);

@@ -430,7 +430,7 @@ static OUTPUT: Keys = table(
     &[
         Key::new("interface_every", Kind::Count(STEPS, ANY))
             .default("1")
-            .about("between stored interface profiles; 0: only at the ends of phases"),
+            .about("between stored interface profiles; 0: only at the ends of phases; more by default where all take over 1 GB"),
         Key::new("bulk_at", Kind::Moments("an array of names of phases and times in s"))
             .default("[]")
             .about("bulk fields at the ends of these phases and at these times"),
