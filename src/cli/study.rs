@@ -18,7 +18,7 @@ use crate::plot::replaceable;
 use crate::scene::Source;
 use crate::study::advice::{self, Advice};
 use crate::study::ladder::{self, Ladder};
-use crate::study::{Climbed, Difference, Run, Solver, Subject, figure};
+use crate::study::{Climbed, Difference, Run, Solver, Subject, figure, roughness};
 
 /// The arguments of `mpjr study`.
 #[derive(Args)]
@@ -98,6 +98,9 @@ fn climb(world: &SimpleCommunicator, arguments: &StudyArguments) -> Result<()> {
     }
     if chatty {
         terminal::tell(findings.ladders());
+        if let Some(line) = roughness::resolved(&subject.with(&[])?, &findings.climbed) {
+            terminal::tell(line);
+        }
     }
     let targets = arguments.error.map_or(TARGETS.to_vec(), |error| vec![error]);
     let finest = solver.run(&advice::finest(&findings.climbed))?;

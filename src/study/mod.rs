@@ -10,6 +10,7 @@
 pub mod advice;
 pub mod figure;
 pub mod ladder;
+pub mod roughness;
 mod softness;
 
 use std::path::Path;
