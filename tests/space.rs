@@ -293,7 +293,7 @@ fn pressures_alone_are_what_newton_finds() {
         &[SPACE[0], SPACE[1], ROUGH, BULK],
         &["layer.cells=[640,4]", ROUGH],
     ];
-    let alone =
+    let text =
         WAVE.replace("[friction]\nlaw = \"coulomb\"\ncoefficient = 0.3\n", "").replace("bulk_at = [\"slide\"]", "");
     let newton = WAVE.replace("coefficient = 0.3", "coefficient = 0.0").replace("bulk_at = [\"slide\"]", "");
     for case in cases {

@@ -24,7 +24,7 @@ impl Spectrum {
     /// The numbers of waves. Of the shortest one, whose conjugate it is itself, only what is real acts.
     pub fn numbers(&self, waves: &[Complex<f64>]) -> Result<Vec<f64>> {
         let waves: Vec<_> = waves.iter().map(|wave| [wave.re, wave.im].into()).collect();
-        self.0.inverse(waves.iter())
+        self.0.inverse(|wave| &waves[wave])
     }
 }
 
