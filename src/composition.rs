@@ -271,7 +271,7 @@ fn condensed<const D: usize, R: Response<D> + 'static>(
     let mounts = mounts::<D>(scene);
     let freedom = Freedom { directions: [scene.is_loaded(), mounts[1].is_some(), mounts[2].is_some()], height };
     let points = interface.points();
-    let alone = interface.friction().is_none() && points.are_flat() && !points.share_nodes();
+    let alone = interface.is_normal_alone() && !points.share_nodes();
     let way = match alone && periodic && components > LARGE_FACE && freedom.unknowns() == 0 {
         true => Way::Pressures,
         false => Way::Newton,

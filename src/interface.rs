@@ -170,6 +170,12 @@ impl<const D: usize> Interface<D> {
         self.laws.penalty
     }
 
+    /// Whether the laws ask for no motion along the face: without friction and wear on a flat one.
+    pub fn is_normal_alone(&self) -> bool {
+        let slips = self.laws.friction.is_some() || self.laws.wear.is_some();
+        !slips && self.points.are_flat()
+    }
+
     /// How often the tangential law was evaluated while solving.
     pub fn tangential_laws(&self) -> usize {
         self.tangential_laws

@@ -297,3 +297,23 @@ fn a_mounted_indenter_wears() {
         assert!((volume[last] / (1e-3 * way) - 1.0).abs() < 1e-4);
     }
 }
+
+/// A large periodic face without friction, which would else be solved for its pressures alone, wears as one with no friction to speak of: its
+/// slip counts.
+#[test]
+fn a_large_face_without_friction_wears() {
+    let indenter = "profile = \"waves\"\namplitude = 2e-5\nwavelength = 1.0";
+    let phases = phase("approach = 5e-5", 0.0, (1.0, 1)) + &phase("", 0.1, (2.0, 4));
+    let text = scene("[24, 24, 4]", indenter, &wear("indenter", "archard", 1e-2), &phases);
+    let text = text.replace("width = 1.0", "width = [1.0, 1.0]").replace("1e-12", "1e-10");
+    let [without, with] = [text.clone(), text + "\n[friction]\nlaw = \"coulomb\"\ncoefficient = 0.0\n"]
+        .map(|text| Run::new(&text).done());
+    for column in ["normal_force", "worn_volume", "hysteretic_force"] {
+        let [a, b] = [&without, &with].map(|run| run.history(column));
+        let largest = a.iter().fold(0.0_f64, |most, a| most.max(a.abs()));
+        assert!(
+            largest > 0.0 && a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-8 * largest),
+            "{column}: {a:?} {b:?}"
+        );
+    }
+}

@@ -56,10 +56,9 @@ impl<const D: usize> Behind<'_, D> {
         Ok(u)
     }
 
-    /// Whether the laws ask for no motion along the face: without friction and wear on a flat one.
+    /// See [`Interface::is_normal_alone`].
     pub fn is_normal_alone(&self) -> bool {
-        let slips = self.interface.friction().is_some() || self.interface.wear().is_some();
-        !slips && self.interface.points().are_flat()
+        self.interface.is_normal_alone()
     }
 
     /// The displacements of the nodes under tractions, from what they do without, m, and the forces, N/m.
