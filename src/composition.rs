@@ -33,9 +33,9 @@ use crate::petsc::{Integrator, Linear, Matrix, Search, Settings, Vector};
 use crate::profile::{Extruded, Profile, Surface};
 use crate::scene::{self, Scene, Stepping, When};
 use crate::solve::{
-    Body, Compliance, Condensed, Following, Freedom, Inside, Interior, LARGE_FACE, LARGE_PERIODIC_FACE, Layered,
-    MAX_NEWTON, Monolithic, PeriodicColumn, Relaxation, Relaxations, Remembering, Response, Solid, Sparse,
-    TransientProblem, Way,
+    Body, Compliance, Condensed, Convection, Following, Freedom, Heat, Heated, Inside, Interior, LARGE_FACE,
+    LARGE_PERIODIC_FACE, Layered, MAX_NEWTON, Medium, Monolithic, PeriodicColumn, Relaxation, Relaxations, Remembering,
+    Response, Solid, Sparse, TransientProblem, Way,
 };
 use crate::wear::{self, Wear};
 
@@ -171,12 +171,16 @@ fn assembled<const D: usize>(
     let mut interface = Interface::new(source.face(), laws, quadrature(scene.contact.quadrature));
     let clearance = clearance(scene, &mut interface)?;
     let solid = Solid { source, dilatation: body::dilatation(scene), regions: materials.regions.clone() };
+    let heated = scene.heat.as_ref().map(|heat| (heat_of(scene, heat, &materials), solid.clone()));
     let mut problem = match form(scene) {
         Form::Monolithic => monolithic(comm, scene, (solid, materials), interface)?,
         Form::Following => following(comm, scene, (solid, materials), interface, compliances)?,
         Form::Remembering => remembering(comm, scene, (solid, materials), interface)?,
     };
     let phases = phases(scene, penetration(scene, problem.strategy.as_mut(), clearance)?);
+    if let Some((heat, solid)) = heated {
+        problem.strategy = Box::new(Heated::new(comm, problem.strategy, &solid, heat)?);
+    }
     if scene.output.energy {
         problem.strategy.keep_account(&problem.u)?;
     }
@@ -320,6 +324,28 @@ fn inside<const D: usize>(solid: &Solid<D>, materials: Materials) -> Result<Box<
     let body = Body::new(SimpleCommunicator::self_comm(), solid)?;
     let bulk = materials.bulk(&body, &body.vector()?)?;
     Ok(Box::new(Sparse::new(bulk, body)?))
+}
+
+/// What is asked of the heat. Materials without numbers for it were refused.
+fn heat_of(scene: &Scene, heat: &scene::Heat, materials: &Materials) -> Heat {
+    let medium = |material: &scene::Material| Medium {
+        conductivity: material.conductivity.unwrap_or(f64::NAN),
+        capacity: material.heat_capacity.unwrap_or(f64::NAN),
+    };
+    let convection =
+        |&scene::Convection { coefficient, temperature }: &scene::Convection| Convection { coefficient, temperature };
+    Heat {
+        media: scene.materials.iter().map(medium).collect(),
+        initial: heat.initial,
+        base: heat.base.temperature(),
+        convection: heat.convection.as_ref().map(convection),
+        share: heat.share,
+        arms: heat.arms.then(|| Relaxations {
+            times: materials.times.clone(),
+            rule: materials.memory,
+            series: materials.series.clone(),
+        }),
+    }
 }
 
 fn friction(friction: &scene::Friction) -> Result<Box<dyn Law>> {

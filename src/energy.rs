@@ -43,6 +43,19 @@ pub struct MountEnergy {
     pub kinetic: f64,
 }
 
+/// The balance of heat, J/m, since t = 0: entered = stored + convected + conducted.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct HeatEnergy {
+    /// From friction, and from the arms where these heat.
+    pub entered: f64,
+    /// What the body holds more than at first.
+    pub stored: f64,
+    /// Given to the air beside the contact.
+    pub convected: f64,
+    /// Given to the base.
+    pub conducted: f64,
+}
+
 /// The share of the body, J/m.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BodyEnergy {

@@ -25,7 +25,7 @@ use crate::snapshot::Snapshot;
 use crate::wear::{Wear, Worn};
 
 pub use displaced::{Residual, Tangent, Trial};
-pub use exchange::Exchange;
+pub use exchange::{Exchange, Rub};
 pub use points::{Point, Points};
 pub use state::State;
 pub use worn::WornFields;
@@ -56,6 +56,8 @@ pub struct Interface<const D: usize> {
     worn: Option<Worn>,
     /// Evaluations of the tangential law while solving.
     tangential_laws: usize,
+    /// Of each point, K; none where nobody tells.
+    temperatures: Vec<f64>,
 }
 
 /// Integrals over the contact face.
@@ -109,6 +111,10 @@ pub trait Face {
     fn totals(&mut self) -> Result<Totals>;
     /// The fields after a step of length `dt`, s.
     fn fields(&self, dt: f64) -> Fields;
+    /// What points have, each of it, at the nodes that share them.
+    fn at_nodes(&self, of_points: &[f64]) -> Vec<f64>;
+    /// What the nodes stand for of the face, and of that what is not in contact, m (m^2 in space).
+    fn areas(&self) -> [Vec<f64>; 2];
 }
 
 impl<const D: usize> Face for Interface<D> {
@@ -123,6 +129,20 @@ impl<const D: usize> Face for Interface<D> {
     fn fields(&self, dt: f64) -> Fields {
         Self::fields(self, dt)
     }
+
+    fn at_nodes(&self, of_points: &[f64]) -> Vec<f64> {
+        let mut nodes = vec![0.0; self.face.count()];
+        for (i, value) in of_points.iter().enumerate() {
+            self.points.shares(i).iter().for_each(|&(node, share)| nodes[node] += share * value);
+        }
+        nodes
+    }
+
+    fn areas(&self) -> [Vec<f64>; 2] {
+        let weights = || self.points.all().iter().map(|point| point.weight);
+        let open = weights().zip(&self.accepted).map(|(weight, state)| if state.pressure > 0.0 { 0.0 } else { weight });
+        [weights().collect::<Vec<_>>(), open.collect()].map(|areas| self.at_nodes(&areas))
+    }
 }
 
 impl<const D: usize> Interface<D> {
@@ -132,7 +152,8 @@ impl<const D: usize> Interface<D> {
         let pairs = if points.share_nodes() { face.pairs() } else { Vec::new() };
         let accepted = vec![State::default(); points.count()];
         let worn = laws.worn(face.grid.as_ref());
-        Self { face, laws, points, pairs, accepted, place: Placement::default(), worn, tangential_laws: 0 }
+        let (place, temperatures) = (Placement::default(), Vec::new());
+        Self { face, laws, points, pairs, accepted, place, worn, tangential_laws: 0, temperatures }
     }
 
     /// The face.
@@ -158,6 +179,17 @@ impl<const D: usize> Interface<D> {
     /// Where the indenter is at the accepted state.
     pub fn placement(&self) -> Placement {
         self.place
+    }
+
+    /// Tells the laws the temperatures of the nodes, K.
+    pub fn warm(&mut self, nodes: &[f64]) {
+        let at = |i: usize| self.points.shares(i).iter().map(|(node, share)| share * nodes[*node]).sum();
+        self.temperatures = (0..self.points.count()).map(at).collect();
+    }
+
+    /// The temperature of a point that its laws know, K.
+    pub fn temperature(&self, i: usize) -> f64 {
+        self.temperatures.get(i).copied().unwrap_or(0.0)
     }
 
     /// The friction law.
@@ -224,11 +256,13 @@ impl<const D: usize> Interface<D> {
     /// Refuses states under a coefficient of friction that is negative or not finite.
     fn check_friction(&self, dt: f64, states: &[State<D>]) -> Result<()> {
         let Some(law) = self.friction() else { return Ok(()) };
-        let fault = |(before, state): (&State<D>, &State<D>)| {
-            let at = Circumstances { pressure: state.pressure, dt, resolution: 0.0, slid: before.slid };
+        let fault = |(i, (before, state)): (usize, (&State<D>, &State<D>))| {
+            let (pressure, slid, temperature) = (state.pressure, before.slid, self.temperature(i));
+            let at = Circumstances { pressure, dt, resolution: 0.0, slid, temperature };
             law.strength().fault(at, Lasting { length: state.slid - before.slid, by_slip: 0.0 })
         };
-        let mut touched = self.accepted.iter().zip(states).filter(|(_, state)| state.pressure > 0.0);
+        let ends = self.accepted.iter().zip(states).enumerate();
+        let mut touched = ends.filter(|(_, (_, state))| state.pressure > 0.0);
         touched.find_map(fault).map_or(Ok(()), |fault| Err(Error::Solver(fault)))
     }
 

@@ -8,9 +8,9 @@ use nalgebra::Vector2;
 use crate::composition::{self, Compliances, Outline, Parts, Problem};
 use crate::error::{Error, Result};
 use crate::interface::WornFields;
-use crate::output::{Across, HistoryRow, InterfaceFrame};
+use crate::output::{Across, HeatRow, HistoryRow, InterfaceFrame};
 use crate::scene::Scene;
-use crate::solve::{BulkFields, Counts, Driver, Observer, Report};
+use crate::solve::{BulkFields, Counts, Driver, Observer, Report, Thermal, TransientProblem};
 use crate::warnings::{Doubts, Warning};
 
 /// What a scene came to; the same on all ranks.
@@ -49,7 +49,7 @@ fn solve_parts(comm: &SimpleCommunicator, scene: &Scene, Parts { mesh, shape }: 
     let doubts = Doubts::of(scene, &Outline::of(scene, &mesh), &shape);
     let problem = composition::assemble(comm, scene, (mesh, shape.surface), &Compliances::default())?;
     let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, mesh } = problem;
-    let mut collected = Collected { history: vec![HistoryRow::default()], ends: Vec::new(), bulk: Vec::new() };
+    let mut collected = Collected { history: vec![first_row(strategy.as_ref())], ends: Vec::new(), bulk: Vec::new() };
     let mut driver = Driver::new(strategy.as_mut(), &mut collected, &phases);
     driver.run(&mut integrator, &mut tangent, &mut u)?;
     let counts = driver.counts();
@@ -71,8 +71,20 @@ impl Solution {
     }
 }
 
+/// The row of the history of a problem at rest, at t = 0.
+pub fn first_row(problem: &dyn TransientProblem) -> HistoryRow {
+    HistoryRow { heat: heat_row(problem), ..HistoryRow::default() }
+}
+
+/// What there is to say of the temperature.
+fn heat_row(problem: &dyn TransientProblem) -> HeatRow {
+    let of = |&Thermal { highest, mean, energy, .. }: &Thermal| HeatRow { highest, mean, energy };
+    problem.thermal().map(of).unwrap_or_default()
+}
+
 /// The row of the history that says where a run is.
 pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
+    let heat = heat_row(report.problem);
     let energy = report.problem.energy().unwrap_or_default();
     let mut contact = report.problem.contact()?;
     let (totals, placement) = (contact.totals()?, contact.placement());
@@ -101,12 +113,16 @@ pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
         mount_tangential: placement.far[1],
         worn_volume: totals.worn_volume,
         energy,
+        heat,
     };
     row.not_finite().map_or(Ok(row), |name| Err(not_finite("history", name, report.time)))
 }
 
 /// The contact face as it is.
 pub fn frame(report: &mut Report<'_>) -> Result<InterfaceFrame> {
+    let thermal = report.problem.thermal();
+    let [temperature, heat_flux] =
+        thermal.map_or_else(Default::default, |thermal| [thermal.face.clone(), thermal.flux.clone()]);
     let contact = report.problem.contact()?;
     let fields = contact.fields();
     let axes = contact.displacement.len() / fields.pressure.len().max(1);
@@ -127,6 +143,8 @@ pub fn frame(report: &mut Report<'_>) -> Result<InterfaceFrame> {
         displacement: if axes == 3 { contact.displacement.to_vec() } else { Vec::new() },
         worn_depth: depth,
         worn_profile: profile.unwrap_or_default(),
+        temperature,
+        heat_flux,
     };
     frame.not_finite().map_or(Ok(()), |name| Err(not_finite("interface", name, report.time)))?;
     Ok(frame)
@@ -147,6 +165,7 @@ pub fn bulk(report: &mut Report<'_>) -> Result<BulkFields> {
     let fields = report.problem.bulk_fields(report.u)?;
     let of = |name, values: &[f64]| values.iter().any(|value| !value.is_finite()).then_some(name);
     let bad = of("displacement", fields.displacement.as_flattened()).or(of("stress", fields.stress.as_flattened()));
+    let bad = bad.or(of("temperature", &fields.temperature));
     bad.map_or(Ok(fields), |name| Err(not_finite("bulk", name, report.time)))
 }
 

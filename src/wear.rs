@@ -93,7 +93,7 @@ mod tests {
             for law in [Law::Archard, Law::Energy] {
                 let wear = Wear { of: Part::Body, law, coefficient: 0.7 };
                 let depth = |p: f64, m: f64| {
-                    let at = Circumstances { pressure: p, dt: 0.5, resolution: 0.0, slid: 0.0 };
+                    let at = Circumstances { pressure: p, dt: 0.5, resolution: 0.0, slid: 0.0, temperature: 0.0 };
                     wear.depth(p, friction.shear(at, m), friction.lasting(m))
                 };
                 for (p, m) in [(2.0, 0.05), (3.0, 0.2), (0.5, 0.7)] {

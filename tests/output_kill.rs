@@ -60,7 +60,8 @@ fn write_frames(path: &Path) {
     for frame in 0..10_000 {
         let value = frame as f64;
         let (displacement, stress) = (vec![value; 2 * nodes.len()], vec![value; 4 * nodes.len()]);
-        let frame = Frame { time: value, nodes: &nodes, displacement: &displacement, stress: &stress };
+        let temperature = &vec![value; nodes.len()];
+        let frame = Frame { time: value, nodes: &nodes, displacement: &displacement, stress: &stress, temperature };
         bulk::write(&universe.world(), Some(&recorder), &frame).unwrap();
         tick();
     }

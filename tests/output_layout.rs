@@ -107,6 +107,8 @@ fn layout_is_that_of_the_contract() {
         ("normal_force tangential_force hysteretic_force", "N/m"),
         ("contact_fraction stick_fraction traction_oscillation", "1"),
         ("energy/external_work energy/stored energy/viscoelastic_dissipation energy/friction_dissipation", "J/m"),
+        ("max_temperature mean_temperature", "K"),
+        ("energy/heat energy/heat_stored energy/heat_convected energy/heat_conducted", "J/m"),
         ("energy/penalty energy/mount_spring energy/mount_dashpot energy/kinetic energy/imbalance", "J/m"),
         ("energy/wear", "J/m"),
         ("worn_volume", "m^2"),
@@ -118,7 +120,7 @@ fn layout_is_that_of_the_contract() {
     }
     expected.push(("/interface/x".into(), vec![FACE], float.clone(), "m"));
     expected.push(("/interface/time".into(), vec![4], float.clone(), "s"));
-    for (name, units) in sample::FIELDS.iter().zip(["Pa", "Pa", "m", "m/s", "m", "m", "m", "m"]) {
+    for (name, units) in sample::FIELDS.iter().zip(["Pa", "Pa", "m", "m/s", "m", "m", "m", "m", "K", "W/m^2"]) {
         expected.push((format!("/interface/{name}"), vec![4, FACE], float.clone(), units));
     }
     expected.push(("/bulk/coordinates".into(), vec![35, 2], float.clone(), "m"));
@@ -131,7 +133,8 @@ fn layout_is_that_of_the_contract() {
     }
     expected.push(("/bulk/time".into(), vec![0], float.clone(), "s"));
     expected.push(("/bulk/displacement".into(), vec![0, 35, 2], float.clone(), "m"));
-    expected.push(("/bulk/stress".into(), vec![0, 35, 4], float, "Pa"));
+    expected.push(("/bulk/stress".into(), vec![0, 35, 4], float.clone(), "Pa"));
+    expected.push(("/bulk/temperature".into(), vec![0, 35], float, "K"));
 
     let mut found = Vec::new();
     for group in ["history", "history/energy", "interface", "bulk"] {

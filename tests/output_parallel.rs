@@ -44,7 +44,9 @@ fn write(
 ) -> mpjr::error::Result<()> {
     let displacement: Vec<_> = nodes.iter().flat_map(|&node| displacement(frame, node)).collect();
     let stress: Vec<_> = nodes.iter().flat_map(|&node| stress(frame, node)).collect();
-    bulk::write(world, recorder, &Frame { time: frame as f64, nodes, displacement: &displacement, stress: &stress })
+    let temperature: Vec<_> = nodes.iter().map(|&node| 293.0 + node as f64).collect();
+    let (time, displacement, stress) = (frame as f64, &displacement[..], &stress[..]);
+    bulk::write(world, recorder, &Frame { time, nodes, displacement, stress, temperature: &temperature })
 }
 
 /// A mesh large enough that two ranks or more write it.

@@ -290,6 +290,7 @@ impl Random {
             materials.iter_mut().for_each(|material| material.memory = Memory::Exponential);
         }
         let solid = self.solid(wavelength);
+        let heat = self.heat(&mut materials);
         Scene {
             title: self.of(&["", "plain", "é \"quoted\" \\ # = [layer]", "'''"]).to_owned(),
             body,
@@ -316,6 +317,7 @@ impl Random {
             },
             contact: Contact { penalty, quadrature },
             friction: self.of(&[None, Some(friction)]),
+            heat,
             mount: None,
             wear: None,
             output: Output {
@@ -368,6 +370,26 @@ impl Random {
         })
     }
 
+    /// None, or one with the numbers that the materials need for it.
+    fn heat(&mut self, materials: &mut [Material]) -> Option<Heat> {
+        let convection = Convection { coefficient: self.positive(), temperature: 300.0 * self.unit() };
+        let heat = Heat {
+            initial: 300.0 * self.unit(),
+            base: self.of(&[Base::Insulated, Base::Held(293.15)]),
+            convection: self.of(&[None, Some(convection)]),
+            share: self.unit(),
+            arms: materials.iter().any(|material| !material.is_elastic()) && self.below(2) == 0,
+            coupled: false,
+        };
+        if self.below(2) == 0 {
+            return None;
+        }
+        for material in materials {
+            (material.conductivity, material.heat_capacity) = (Some(self.positive()), Some(1e6 * self.positive()));
+        }
+        Some(heat)
+    }
+
     /// One material, or several: strata of a layer, regions of a mesh.
     fn materials(&mut self, body: &Body) -> Vec<Material> {
         let count = 1 + self.below(3) as usize;
@@ -392,6 +414,8 @@ impl Random {
                     bulk_arms: self.arms(bulk_arms),
                     notes: self.of(&[vec![], vec!["read from \"a\"".to_owned(), "é".to_owned()]]),
                     memory,
+                    conductivity: self.of(&[None, Some(0.2)]),
+                    heat_capacity: self.of(&[None, Some(2e6)]),
                 }
             })
             .collect()

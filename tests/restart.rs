@@ -6,10 +6,10 @@ mod common;
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use common::msh::write_msh;
-use common::program::{assert_same, ends_with, errors, output_of, program};
+use common::program::{assert_same, ends_with, errors, output_of, program, wait_for};
 use mpjr::mesh::{Layer, Sides};
 use mpjr::output::{checkpoint, reader::Results};
 
@@ -76,20 +76,6 @@ fn run(command: &mut Command, scene: &Path, out: &Path) -> Command {
     run.envs(command.get_envs().filter_map(|(key, value)| Some((key, value?))));
     run.arg("run").arg(scene).arg("--out").arg(out);
     run
-}
-
-/// Waits until the checkpoint has been written `count` times more, or the program has ended.
-fn wait_for(child: &mut Child, results: &Path, count: usize) {
-    let written = || std::fs::metadata(checkpoint::beside(results)).and_then(|about| about.modified()).ok();
-    let (mut last, mut seen) = (written(), 0);
-    let begun = Instant::now();
-    while seen < count && child.try_wait().unwrap().is_none() {
-        let now = written();
-        seen += usize::from(now != last && now.is_some());
-        last = now;
-        assert!(begun.elapsed() < Duration::from_secs(120), "no checkpoint comes");
-        std::thread::sleep(Duration::from_millis(1));
-    }
 }
 
 /// Twenty kills at moments that no pattern of the program's can follow.

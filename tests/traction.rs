@@ -66,6 +66,7 @@ impl<const D: usize> Face<D> {
             drive: draw.vector(),
             elastic: SVector::zeros(),
             slid: 0.3,
+            temperature: 0.0,
             moduli: Moduli { normal: 0.3, tangential: Some(0.4) },
             lengths: [1.0; 2],
         };
@@ -258,6 +259,7 @@ fn a_held_point_has_the_shear_of_its_slip(_: &SimpleCommunicator, _: &Path) {
         drive: SVector::from([slip, 0.0]),
         elastic: SVector::zeros(),
         slid: 0.0,
+        temperature: 0.0,
         moduli: Moduli { normal: 4.0, tangential: None },
         lengths: [1.0; 2],
     };

@@ -20,6 +20,7 @@ use crate::output::{
 use crate::parallel::agree;
 use crate::petsc::Session;
 use crate::scene::{self, Scene, Wearing};
+use crate::solution;
 use crate::solve::Driver;
 use crate::warnings::{Doubts, Warning};
 
@@ -73,11 +74,12 @@ pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<
     let doubts = (comm.rank() == 0).then(|| Doubts::of(scene, &Outline::of(scene, &parts.mesh), &parts.shape));
     let problem = composition::assemble(comm, scene, (parts.mesh, parts.shape.surface), job.compliances)?;
     let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, mesh } = problem;
+    let first = solution::first_row(strategy.as_ref());
     let begun = job.origin.load(comm, job.out, &phases)?;
     if let Some(begun) = &begun {
         strategy.restore(&begun.snapshot, &mut u)?;
     }
-    let open = |doubts: &Doubts| open(job, started, (&mesh, doubts), &phases, begun.as_ref());
+    let open = |doubts: &Doubts| open(job, (started, &first), (&mesh, doubts), &phases, begun.as_ref());
     let recorder = agree(comm, doubts.as_ref().map(open).transpose())?;
     doubts.iter().flat_map(|doubts| &doubts.before).for_each(job.doubt);
     let started = match (job.origin, &begun) {
@@ -136,7 +138,7 @@ pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<
 /// The recorder of the run, on the rank that writes.
 fn open(
     job: &Job<'_>,
-    started: SystemTime,
+    (started, first): (SystemTime, &HistoryRow),
     (mesh, doubts): (&Meshed, &Doubts),
     phases: &[Phase],
     begun: Option<&Begun>,
@@ -159,7 +161,7 @@ fn open(
         started,
         warnings: doubts.before.iter().map(ToString::to_string).collect(),
     };
-    let recorder = Recorder::create(job.out, &metadata, plan, &HistoryRow::default())?;
+    let recorder = Recorder::create(job.out, &metadata, plan, first)?;
     // One that is left belongs to the file that was replaced.
     checkpoint::remove(job.out)?;
     if let Origin::Shared { results, .. } = job.origin {
@@ -175,6 +177,7 @@ pub fn extra(scene: &Scene) -> Extra {
     Extra {
         energy: scene.output.energy,
         mounts,
+        heat: scene.heat.is_some(),
         wear: scene.wear.is_some(),
         worn_profile: scene.wear.is_some_and(wears),
     }

@@ -161,7 +161,8 @@ impl Observer for Recording<'_> {
         if report.bulk_output {
             let fields = agree(self.world, solution::bulk(&mut report))?;
             let (displacement, stress) = solution::components(&fields);
-            let frame = Frame { time: report.time, nodes: &fields.nodes, displacement: &displacement, stress: &stress };
+            let (time, nodes, temperature) = (report.time, &fields.nodes, &fields.temperature);
+            let frame = Frame { time, nodes, displacement: &displacement, stress: &stress, temperature };
             output::bulk::write(self.world, self.recorder.as_ref(), &frame)?;
         }
         self.checkpoint(&mut report)

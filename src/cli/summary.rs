@@ -10,8 +10,8 @@ use crate::energy::{Energy, MountEnergy};
 use crate::output::Status;
 use crate::petsc;
 use crate::scene::{
-    Coefficient, Friction, Law, Penalty, PoissonRule, Quadrature, Scene, Sides, Span, Strategy, Wear, WearLaw, Wearing,
-    added_compliance, shortest_step,
+    Coefficient, Friction, Heat, Law, Penalty, PoissonRule, Quadrature, Scene, Sides, Span, Strategy, Wear, WearLaw,
+    Wearing, added_compliance, shortest_step,
 };
 use crate::solve::{Counts, Work};
 
@@ -38,6 +38,10 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
         Some(friction) => yes.push(friction_law(friction)),
         None => no.push("friction (symmetric solver)".to_owned()),
     }
+    match &scene.heat {
+        Some(heat) => yes.push(heat_in_words(heat)),
+        None => no.push("heat".to_owned()),
+    }
     if let Some(mount) = &scene.mount {
         let names = ["normal", "tangential"].into_iter().zip(mount.directions());
         let names: Vec<&str> = names.filter_map(|(name, end)| end.map(|_| name)).collect();
@@ -62,8 +66,21 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
     } else {
         yes.push(format!("stress recovery and bulk output at {} moment(s)", scene.output.bulk_at.len()));
     }
-    no.push("inertia, large strains, thermal effects".to_owned());
+    no.push("inertia, large strains".to_owned());
     (yes, no)
+}
+
+/// What heats the body, and where the heat goes.
+fn heat_in_words(heat: &Heat) -> String {
+    let arms = if heat.arms { " and what the arms dissipate" } else { "" };
+    let base = heat.base.temperature().map_or("insulated".to_owned(), |kelvin| format!("at {kelvin} K"));
+    let air = heat.convection.map_or("insulated beside the contact".to_owned(), |air| {
+        format!("{} W/m^2/K to air at {} K beside the contact", air.coefficient, air.temperature)
+    });
+    format!(
+        "heat, one way: {} of what friction dissipates{arms}; from {} K, base {base}, face {air}",
+        heat.share, heat.initial
+    )
 }
 
 /// The coefficient of friction, and how it turns.

@@ -79,7 +79,15 @@ impl Estimate {
                 (contact + 2.0 * fill.solve, kept * (compliance + fill.memory) + 3.0 * matrix + arms * vector)
             }
         };
-        Self { step, memory: PROGRAM + memory }
+        // One component, with a factor or a chain of its own.
+        let [more_step, more_memory] = match (&scene.heat, by_wave) {
+            (None, _) => [0.0; 2],
+            (Some(_), true) => [6e-8 * unknowns / axes, 60.0 * unknowns / axes],
+            (Some(_), false) => {
+                [fill.solve / axes, (fill.memory + compliance) / (axes * axes) + 3.0 * matrix / (axes * axes)]
+            }
+        };
+        Self { step: step + more_step, memory: PROGRAM + memory + more_memory }
     }
 
     /// Of a periodic layer in space.

@@ -99,6 +99,9 @@ pub fn steady(comm: &SimpleCommunicator, scene: &Scene, file: &Path, heading: Ve
     if scene.wear.is_some() {
         return Err(refused("wear", "has no steady state: what wears goes on changing; take the table out"));
     }
+    if scene.heat.is_some() {
+        return Err(refused("heat", "has no temperatures; take the table out"));
+    }
     let held = held(scene, file)?;
     let Parts { mesh, shape } = prepare(comm, scene, file)?;
     let friction = scene.friction.as_ref().map(friction).transpose()?;

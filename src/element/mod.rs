@@ -2,6 +2,7 @@
 //!
 //! A kind of cell is a [`Shape`]: one file, and one line in [`Kind::shape`].
 
+pub mod conduction;
 pub mod mpjr;
 mod multilinear;
 mod simplex;
@@ -18,6 +19,9 @@ pub const MOST_CORNERS: usize = 8;
 /// Derivatives of the shape functions of a cell, of which as many count as it has corners.
 pub type Gradients<const D: usize> = [SVector<f64, D>; MOST_CORNERS];
 
+/// The shape functions of a cell, of which as many count as it has corners.
+pub type Values = [f64; MOST_CORNERS];
+
 /// A point of the reference cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample<const D: usize> {
@@ -33,6 +37,8 @@ pub trait Shape<const D: usize>: Sync {
     fn corners(&self) -> usize;
     /// The points at which it is integrated.
     fn samples(&self) -> Vec<Sample<D>>;
+    /// N_a at a point of the reference cell.
+    fn values(&self, at: &SVector<f64, D>) -> Values;
     /// dN_a/dxi at a point of the reference cell.
     fn slopes(&self, at: &SVector<f64, D>) -> Gradients<D>;
     /// What each of the points of [`Self::samples`] counts for at a corner, for a field that is known there.

@@ -132,7 +132,7 @@ mod tests {
     fn check<const D: usize>(normal: SVector<f64, D>, along: SVector<f64, D>) {
         let tanh = CoulombTanh { strength: Strength::constant(0.3), regularisation: 1e-3 };
         let elastic = ElasticSlip { strength: Strength::constant(0.3), elastic_slip: 1e-4 };
-        let at = Circumstances { pressure: 0.0, dt: 0.1, resolution: 0.0, slid: 0.0 };
+        let at = Circumstances { pressure: 0.0, dt: 0.1, resolution: 0.0, slid: 0.0, temperature: 0.0 };
         let laws: [Option<&dyn Law>; 3] = [None, Some(&tanh), Some(&elastic)];
         for law in laws {
             for (slip, overlap) in [(3e-5, 1e-4), (-9e-5, 7e-5), (2.3e-4, 3e-5), (-4e-4, 1e-4), (1e-4, -5e-5)] {

@@ -5,7 +5,7 @@
 
 use nalgebra::SVector;
 
-use super::{Gradients, MOST_CORNERS, Sample, Shape};
+use super::{Gradients, MOST_CORNERS, Sample, Shape, Values};
 
 /// N_a = product over the directions of (1 + c_a xi)/2.
 pub struct Multilinear;
@@ -24,6 +24,11 @@ impl<const D: usize> Shape<D> for Multilinear {
 
     fn samples(&self) -> Vec<Sample<D>> {
         (0..1 << D).map(|a| Sample { at: corner::<D>(a) / 3.0_f64.sqrt(), weight: 1.0 }).collect()
+    }
+
+    fn values(&self, at: &SVector<f64, D>) -> Values {
+        let value = |a: usize| (0..D).map(|axis| 0.5 * (1.0 + corner::<D>(a)[axis] * at[axis])).product();
+        std::array::from_fn(|a| if a < 1 << D { value(a) } else { 0.0 })
     }
 
     fn slopes(&self, at: &SVector<f64, D>) -> Gradients<D> {

@@ -6,7 +6,7 @@
 
 use nalgebra::SVector;
 
-use super::{Gradients, MOST_CORNERS, Sample, Shape};
+use super::{Gradients, MOST_CORNERS, Sample, Shape, Values};
 
 /// N_0 = 1 - sum xi, N_a = xi_a.
 pub struct Simplex;
@@ -19,6 +19,13 @@ impl<const D: usize> Shape<D> for Simplex {
     fn samples(&self) -> Vec<Sample<D>> {
         let volume = 1.0 / (1..=D).product::<usize>() as f64;
         vec![Sample { at: SVector::repeat(1.0 / (D + 1) as f64), weight: volume }]
+    }
+
+    fn values(&self, at: &SVector<f64, D>) -> Values {
+        let mut values = [0.0; MOST_CORNERS];
+        values[0] = 1.0 - at.sum();
+        values[1..=D].copy_from_slice(at.as_slice());
+        values
     }
 
     fn slopes(&self, _at: &SVector<f64, D>) -> Gradients<D> {

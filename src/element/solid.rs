@@ -122,7 +122,7 @@ impl<const D: usize> Placed<'_, D> {
     }
 
     /// The gradients of the shape functions, 1/m, and the weight, m^D, at each of its points.
-    fn points(&self) -> Vec<(Gradients<D>, f64)> {
+    pub(super) fn points(&self) -> Vec<(Gradients<D>, f64)> {
         let at = |sample: super::Sample<D>| {
             let slopes = self.shape.slopes(&sample.at);
             // (i, j) = d x_j / d xi_i

@@ -13,7 +13,7 @@ mod strength;
 pub use coulomb::Coulomb;
 pub use coulomb_tanh::CoulombTanh;
 pub use elastic_slip::ElasticSlip;
-pub use strength::{Bound, Coefficient, Lasting, Strength, VARIABLES};
+pub use strength::{Bound, Coefficient, Lasting, Strength, TEMPERATURE, VARIABLES};
 
 /// What a point answers in: its pressure, its step and its past.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +26,8 @@ pub struct Circumstances {
     pub resolution: f64,
     /// What the point has slid, without what is elastic, up to the step, m.
     pub slid: f64,
+    /// At the beginning of the step, K; any number where nobody tells.
+    pub temperature: f64,
 }
 
 /// phi and its derivative.
@@ -78,7 +80,8 @@ pub trait Law: std::fmt::Debug + Send + Sync {
 
     /// Whether a point that does not slip keeps the shear that it has, for as long as that is.
     fn rests(&self) -> bool {
-        (self.holds() || self.sharpness(1.0) == 0.0) && !self.strength().varies()
+        let strength = self.strength();
+        (self.holds() || self.sharpness(1.0) == 0.0) && !strength.varies() && !strength.knows_temperature()
     }
 
     /// How much of the slip m is elastic, m.

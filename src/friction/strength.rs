@@ -22,8 +22,11 @@ pub enum Coefficient {
     Formula(Arc<Expression>),
 }
 
-/// The variables of a coefficient: slip rate, m/s; pressure, Pa; slid distance, m.
-pub const VARIABLES: [&str; 3] = ["v", "p", "s"];
+/// The variables of a coefficient: slip rate, m/s; pressure, Pa; slid distance, m; temperature of the face at the beginning of the
+/// step, K.
+pub const VARIABLES: [&str; 4] = ["v", "p", "s", "T"];
+/// The place of the temperature among them.
+pub const TEMPERATURE: usize = 3;
 
 /// B and its derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,6 +70,11 @@ impl Strength {
             Coefficient::Constant(_) => false,
             Coefficient::Formula(formula) => formula.has(0) || formula.has(2),
         }
+    }
+
+    /// Whether B changes with the temperature.
+    pub fn knows_temperature(&self) -> bool {
+        matches!(&self.coefficient, Coefficient::Formula(formula) if formula.has(TEMPERATURE))
     }
 
     /// B of a point that slips. Where a formula is negative or not finite there is no friction; see [`Self::fault`].
@@ -128,21 +136,23 @@ impl Strength {
         let Coefficient::Formula(formula) = &self.coefficient else { return None };
         let variables = along(at, slip);
         let value = formula.at(&variables).value;
-        let [v, p, s] = variables.map(|variable| variable.value);
+        let [v, p, s, temperature] = variables.map(|variable| variable.value);
+        let warm = if self.knows_temperature() { format!(", T = {temperature:.6e} K") } else { String::new() };
         (!(value >= 0.0 && value.is_finite())).then(|| {
-            format!("friction.coefficient is {value:.6} at v = {v:.6e} m/s, p = {p:.6e} Pa, s = {s:.6e} m, which the contact met: it must be a finite number, at least 0")
+            format!("friction.coefficient is {value:.6} at v = {v:.6e} m/s, p = {p:.6e} Pa, s = {s:.6e} m{warm}, which the contact met: it must be a finite number, at least 0")
         })
     }
 }
 
 /// The variables, with their slopes along the slip.
-fn along(at: Circumstances, Lasting { length, by_slip }: Lasting) -> [Dual; 3] {
+fn along(at: Circumstances, Lasting { length, by_slip }: Lasting) -> [Dual; 4] {
     let rate = Dual { value: length / at.dt, slope: by_slip / at.dt };
-    [rate, Dual::constant(at.pressure), Dual { value: at.slid + length, slope: by_slip }]
+    let slid = Dual { value: at.slid + length, slope: by_slip };
+    [rate, Dual::constant(at.pressure), slid, Dual::constant(at.temperature)]
 }
 
 /// The variables, with their slopes along the pressure.
-fn across(at: Circumstances, slip: Lasting) -> [Dual; 3] {
-    let [v, p, s] = along(at, slip).map(|variable| variable.value);
-    [Dual::constant(v), Dual::variable(p), Dual::constant(s)]
+fn across(at: Circumstances, slip: Lasting) -> [Dual; 4] {
+    let [v, p, s, temperature] = along(at, slip).map(|variable| variable.value);
+    [Dual::constant(v), Dual::variable(p), Dual::constant(s), Dual::constant(temperature)]
 }

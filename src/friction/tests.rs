@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::*;
 use crate::expression::Expression;
 
-const AT: Circumstances = Circumstances { pressure: 3.0, dt: 0.1, resolution: 0.0, slid: 0.0 };
+const AT: Circumstances = Circumstances { pressure: 3.0, dt: 0.1, resolution: 0.0, slid: 0.0, temperature: 0.0 };
 
 fn laws() -> [Box<dyn Law>; 3] {
     [

@@ -139,7 +139,13 @@ impl<const D: usize> Interface<D> {
         let law = self.friction();
         let Placement { approach, dt, resolution, .. } = placement;
         let way = placement.way();
-        let at = |slid| Circumstances { pressure: 0.0, dt, resolution: resolution * dt, slid };
+        let at = |i: usize| Circumstances {
+            pressure: 0.0,
+            dt,
+            resolution: resolution * dt,
+            slid: self.accepted[i].slid,
+            temperature: self.temperature(i),
+        };
         let answer = |(i, point): (usize, &super::Point<D>)| {
             let normal = point.normal;
             let (end, beginning) = (self.points.at(i, &trial.end), self.points.at(i, &trial.beginning));
@@ -147,7 +153,7 @@ impl<const D: usize> Interface<D> {
             let elastic = law.map_or(SVector::zeros(), |law| self.accepted[i].elastic(law));
             let overlap = end.dot(&normal) - self.clearance(i, approach) * normal[D - 1];
             let relative = Relative { overlap, slip: past - normal * normal.dot(&past) + elastic, normal };
-            (relative, Traction::new(relative, penalty, law, at(self.accepted[i].slid)))
+            (relative, Traction::new(relative, penalty, law, at(i)))
         };
         let answers: Vec<_> = self.points.all().iter().enumerate().map(answer).collect();
         self.count_laws(answers.iter().filter(|(_, traction)| traction.pressure > 0.0).count());

@@ -22,8 +22,33 @@ use nalgebra::SVector;
 use super::{Interface, State};
 use crate::energy::{FaceEnergy, MountEnergy};
 use crate::error::Result;
+use crate::friction::Law;
 use crate::loading::{DIRECTIONS, Mount, Placement, Way};
 use crate::snapshot::Snapshot;
+
+/// What friction does at a point over a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rub<const D: usize> {
+    /// The mean shear, Pa.
+    pub shear: SVector<f64, D>,
+    /// What of the slip went into what is elastic, m, and what is for good.
+    pub stored: SVector<f64, D>,
+    /// See `stored`.
+    pub lost: SVector<f64, D>,
+    /// What it dissipates, J/m^2; at least 0.
+    pub taken: f64,
+}
+
+impl<const D: usize> Rub<D> {
+    /// Between the states of a point at both ends of a step.
+    pub fn new(law: Option<&dyn Law>, before: &State<D>, after: &State<D>) -> Self {
+        let shear = 0.5 * (before.shear + after.shear);
+        let held = |state: &State<D>| law.map_or(SVector::zeros(), |law| state.elastic(law));
+        let stored = held(after) - held(before);
+        let lost = after.slip - stored;
+        Self { shear, stored, lost, taken: shear.dot(&lost).max(0.0) }
+    }
+}
 
 /// The energy that went through the face up to an accepted state, and what of that state the next step needs.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -64,13 +89,10 @@ impl Exchange {
             let point = &interface.points().all()[i];
             let opened = before.overlap.min(0.0) - after.overlap.min(0.0);
             let closed = point.normal[D - 1] * (place.approach_rate * dt - (heights[i] - self.heights[i])) + opened;
-            let (pressure, shear) = (0.5 * (before.pressure + after.pressure), 0.5 * (before.shear + after.shear));
-            let held = |state: &State<D>| interface.friction().map_or(SVector::zeros(), |law| state.elastic(law));
-            let stored = held(after) - held(before);
-            self.elastic += point.weight * shear.dot(&stored);
-            let lost = after.slip - stored;
+            let pressure = 0.5 * (before.pressure + after.pressure);
             // What friction is not let give back, the indenter is not let take.
-            let taken = shear.dot(&lost).max(0.0);
+            let Rub { shear, stored, lost, taken } = Rub::new(interface.friction(), before, after);
+            self.elastic += point.weight * shear.dot(&stored);
             self.energy.friction += point.weight * taken;
             work += point.weight * (pressure * closed + shear.dot(&(way - lost)) + taken);
             pressing += point.weight * (pressure * point.normal[D - 1] - shear[D - 1]);

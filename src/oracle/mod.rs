@@ -10,6 +10,7 @@
 //! stands at h(x - s), and the hysteretic force is the integral of p dh/dx.
 
 pub mod half_disk;
+pub mod heat;
 pub mod layer;
 pub mod line_contact;
 pub mod periodic;

@@ -18,7 +18,7 @@ use mpi::collective::SystemOperation;
 use mpi::datatype::{Partition, PartitionMut};
 use mpi::traits::{Communicator, CommunicatorCollectives, Equivalence};
 
-use super::columns::BULK;
+use super::columns;
 use super::state::{State, bytes};
 use super::store::{Table, failed, place};
 use super::{Recorder, xdmf};
@@ -41,18 +41,27 @@ pub struct Frame<'a> {
     pub displacement: &'a [f64],
     /// Stress at these nodes, Pa, tension positive: xx, zz, yy, xz (or xx, yy, zz, xy, yz, xz).
     pub stress: &'a [f64],
+    /// Temperature of these nodes, K; nothing where it is not modelled.
+    pub temperature: &'a [f64],
+}
+
+impl<'a> Frame<'a> {
+    /// Its fields, in the order of the file.
+    fn fields(&self) -> [&'a [f64]; 3] {
+        [self.displacement, self.stress, self.temperature]
+    }
 }
 
 /// Where a frame goes; known to the recorder's rank and told to the others.
 struct Target {
     path: PathBuf,
     nodes: usize,
-    /// Components of the displacement, of the stress.
-    widths: [usize; 2],
+    /// Numbers of a node in each field.
+    widths: Vec<usize>,
     /// The number of the frame.
     row: usize,
-    /// Where displacement and stress of the frame begin in the file.
-    at: [u64; 2],
+    /// Where each field of the frame begins in the file.
+    at: Vec<u64>,
 }
 
 /// Adds a frame to `/bulk` and brings the XDMF file up to date. Collective; rank 0 of `comm` gives the recorder.
@@ -80,22 +89,24 @@ where
     let mine = match held {
         Some(state) => reserve(state),
         None if comm.rank() == 0 => Err(Error::Internal("bulk fields without a recorder on rank 0".into())),
-        None => Ok(Target { path: PathBuf::new(), nodes: 0, widths: [1; 2], row: 0, at: [0; 2] }),
+        None => Ok(Target { path: PathBuf::new(), nodes: 0, widths: Vec::new(), row: 0, at: Vec::new() }),
     };
     let mine = agree(comm, mine)?;
     let mut path = mine.path.as_os_str().as_bytes().to_vec();
     broadcast(comm, 0, &mut path);
-    let [displacement, stress] = mine.widths.map(|width| width as u64);
-    let [row, nodes] = [mine.row, mine.nodes].map(|count| count as u64);
-    let mut numbers = [nodes, displacement, stress, row, mine.at[0], mine.at[1]].map(u64::to_ne_bytes).concat();
-    broadcast(comm, 0, &mut numbers);
-    let number = |index: usize| numbers.as_chunks().0.get(index).map_or(0, |bytes| u64::from_ne_bytes(*bytes));
+    let widths = mine.widths.iter().map(|width| *width as u64);
+    let numbers = [mine.nodes as u64, mine.row as u64].into_iter().chain(widths).chain(mine.at);
+    let mut bytes: Vec<u8> = numbers.flat_map(u64::to_ne_bytes).collect();
+    broadcast(comm, 0, &mut bytes);
+    let numbers: Vec<u64> = bytes.as_chunks().0.iter().map(|bytes| u64::from_ne_bytes(*bytes)).collect();
+    let number = |index: usize| numbers.get(index).map_or(0, |number| *number as usize);
+    let (widths, at) = numbers.get(2..).unwrap_or_default().split_at(numbers.len().saturating_sub(2) / 2);
     Ok(Target {
         path: Path::new(OsStr::from_bytes(&path)).to_owned(),
-        nodes: number(0) as usize,
-        widths: [number(1) as usize, number(2) as usize],
-        row: number(3) as usize,
-        at: [number(4), number(5)],
+        nodes: number(0),
+        widths: widths.iter().map(|width| *width as usize).collect(),
+        row: number(1),
+        at: at.to_vec(),
     })
 }
 
@@ -110,14 +121,15 @@ fn reserve(state: &mut State) -> Result<Target> {
     // Also checks that the path still leads to the file.
     drop(store.open()?);
     let row = store.rows(Table::Bulk);
-    let at = [store.row_at(Table::Bulk, 0, row)?, store.row_at(Table::Bulk, 1, row)?];
-    let widths = [0, 1].map(|field| BULK.get(field).map_or(0, |field| field.components.names(mesh.axes).len()));
+    let widths: Vec<usize> = columns::bulk(state.plan.extra).map(|field| field.width(mesh.axes)).collect();
+    let at = (0..widths.len()).map(|field| store.row_at(Table::Bulk, field, row)).collect::<Result<_>>()?;
     Ok(Target { path: store.path().to_owned(), nodes: mesh.nodes, widths, row, at })
 }
 
 fn check(frame: &Frame, target: &Target) -> Result<()> {
     let (given, nodes) = (frame.nodes.len(), target.nodes);
-    if [frame.displacement.len(), frame.stress.len()] != target.widths.map(|width| width * given) {
+    let expected = |field: usize| given * target.widths.get(field).unwrap_or(&0);
+    if frame.fields().iter().enumerate().any(|(field, values)| values.len() != expected(field)) {
         return Err(Error::Internal("bulk fields and nodes differ in number".into()));
     }
     match frame.nodes.iter().find(|&&node| node >= nodes) {
@@ -129,8 +141,7 @@ fn check(frame: &Frame, target: &Target) -> Result<()> {
 /// The nodes that one rank writes.
 struct Block {
     first: usize,
-    /// Displacement, stress.
-    fields: [Vec<f64>; 2],
+    fields: Vec<Vec<f64>>,
 }
 
 /// How nodes are dealt out to the ranks that write: blocks of `length` nodes, one on every `stride`-th rank.
@@ -168,8 +179,7 @@ where
     C: Communicator + CommunicatorCollectives,
 {
     let (rank, ranks) = (comm.rank() as usize, comm.size() as usize);
-    let [displacement, stress] = target.widths;
-    let numbers = displacement + stress;
+    let numbers = target.widths.iter().sum();
     let blocks = Blocks::new(target.nodes, numbers, ranks);
     let mut order: Vec<usize> = (0..frame.nodes.len()).collect();
     order.sort_by_key(|&local| frame.nodes[local]);
@@ -179,8 +189,9 @@ where
     for local in order {
         counts[blocks.writer(frame.nodes[local])] += 1;
         indices.push(frame.nodes[local] as u64);
-        values.extend_from_slice(&frame.displacement[local * displacement..(local + 1) * displacement]);
-        values.extend_from_slice(&frame.stress[local * stress..(local + 1) * stress]);
+        for (field, width) in frame.fields().iter().zip(&target.widths) {
+            values.extend_from_slice(&field[local * width..(local + 1) * width]);
+        }
     }
     let mut incoming: Vec<Count> = vec![0; ranks];
     comm.all_to_all_into(&counts[..], &mut incoming[..]);
@@ -189,13 +200,16 @@ where
 
     let std::ops::Range { start: first, end } = blocks.of(rank);
     let mine = end - first;
-    let mut block = Block { first, fields: target.widths.map(|width| vec![f64::NAN; mine * width]) };
+    let mut block = Block { first, fields: target.widths.iter().map(|width| vec![f64::NAN; mine * width]).collect() };
     let mut seen = vec![false; mine];
     for (&node, values) in indices.iter().zip(values.chunks_exact(numbers)) {
         let at = node as usize - first;
-        let (first, second) = values.split_at(displacement);
-        block.fields[0][at * displacement..][..displacement].copy_from_slice(first);
-        block.fields[1][at * stress..][..stress].copy_from_slice(second);
+        let mut rest = values;
+        for (field, &width) in block.fields.iter_mut().zip(&target.widths) {
+            let (own, others) = rest.split_at(width);
+            field[at * width..][..width].copy_from_slice(own);
+            rest = others;
+        }
         seen[at] = true;
     }
     match seen.iter().position(|seen| !seen) {
@@ -229,7 +243,7 @@ fn write_block(target: &Target, block: &Block) -> std::io::Result<u64> {
     }
     let file = OpenOptions::new().write(true).open(&target.path)?;
     let mut sum = 0_u64;
-    for (index, (values, width)) in block.fields.iter().zip(target.widths).enumerate() {
+    for (index, (values, width)) in block.fields.iter().zip(&target.widths).enumerate() {
         let (first, bytes) = (block.first * width, bytes(values));
         file.write_all_at(&bytes, target.at[index] + (first * size_of::<f64>()) as u64)?;
         sum = row_sum(place(index, target.row), first, &bytes).wrapping_add(sum);
@@ -244,10 +258,13 @@ fn commit(state: &mut State, time: f64, sum: u64) -> Result<()> {
     let store = &mut state.store;
     let file = store.open()?;
     let row = store.rows(Table::Bulk);
-    let (at, bytes) = (store.row_at(Table::Bulk, BULK.len(), row)?, time.to_ne_bytes());
+    let time_at = columns::bulk(state.plan.extra).count();
+    let (at, bytes) = (store.row_at(Table::Bulk, time_at, row)?, time.to_ne_bytes());
     file.write_all_at(&bytes, at).map_err(|error| failed(store.path(), error))?;
-    let sum = row_sum(place(BULK.len(), row), 0, &bytes).wrapping_add(sum);
+    let sum = row_sum(place(time_at, row), 0, &bytes).wrapping_add(sum);
     store.commit(&file, &[(Table::Bulk, 1, sum)])?;
     state.bulk_times.push(time);
-    state.mesh.map_or(Ok(()), |mesh| xdmf::write(state.store.path(), &state.version, mesh, &state.bulk_times))
+    state.mesh.map_or(Ok(()), |mesh| {
+        xdmf::write(state.store.path(), &state.version, (mesh, state.plan.extra), &state.bulk_times)
+    })
 }

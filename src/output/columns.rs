@@ -1,6 +1,6 @@
 //! The one place that names what is recorded: history columns, interface fields, bulk fields. A new column is one line.
 
-use crate::energy::Energy;
+use crate::energy::{Energy, HeatEnergy};
 
 /// One row of `/history`: the state at the end of an accepted step (row 0: the unloaded state). Forces are per unit
 /// thickness (N/m), in space N. The default is the unloaded state at t = 0.
@@ -42,6 +42,19 @@ pub struct HistoryRow {
     pub worn_volume: f64,
     /// The energy balance; recorded where it is asked for.
     pub energy: Energy,
+    /// The temperature of the body; recorded where it is modelled.
+    pub heat: HeatRow,
+}
+
+/// What a [`HistoryRow`] says of the temperature.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct HeatRow {
+    /// The highest of the body, K.
+    pub highest: f64,
+    /// Its mean, by heat capacity, K.
+    pub mean: f64,
+    /// The balance of heat; recorded where the energy balance is.
+    pub energy: HeatEnergy,
 }
 
 /// The components along y of the vectors of a [`HistoryRow`]; none in the plane.
@@ -81,6 +94,10 @@ pub struct InterfaceFrame {
     pub worn_depth: Vec<f64>,
     /// Where the indenter wears: its profile, m, at x in its own frame.
     pub worn_profile: Vec<f64>,
+    /// With heat: temperature, K.
+    pub temperature: Vec<f64>,
+    /// With heat: what enters the body, less what the air takes, W/m^2.
+    pub heat_flux: Vec<f64>,
 }
 
 /// Where a history column has its number in a row; also the type it has in the file (float64 or int64).
@@ -130,11 +147,13 @@ pub struct Extra {
     pub wear: bool,
     /// The profile of an indenter that wears.
     pub worn_profile: bool,
+    /// The temperature of the body; also of its fields.
+    pub heat: bool,
 }
 
 impl Extra {
     /// What all rows can have.
-    pub const ALL: Self = Self { energy: true, mounts: [true; 2], wear: true, worn_profile: true };
+    pub const ALL: Self = Self { energy: true, mounts: [true; 2], wear: true, worn_profile: true, heat: true };
 }
 
 /// The columns of `/history`. `time` is the last: the lengths reach the file in this order (see [`super`]).
@@ -188,15 +207,32 @@ const WORN: Column = real("worn_volume", "m^2", "volume that has worn off, per u
 const WEAR_ENERGY: Column =
     real("energy/wear", "J/m", "work of the pressure on what it wore off since t = 0", |r| &mut r.energy.wear);
 
+/// The temperature of the body.
+#[rustfmt::skip]
+const HEAT: &[Column] = &[
+    real("max_temperature", "K", "highest temperature of the body", |r| &mut r.heat.highest),
+    real("mean_temperature", "K", "mean temperature of the body, by heat capacity", |r| &mut r.heat.mean),
+];
+
+/// The balance of heat.
+#[rustfmt::skip]
+const HEAT_ENERGY: &[Column] = &[
+    real("energy/heat", "J/m", "heat that entered the body since t = 0", |r| &mut r.heat.energy.entered),
+    real("energy/heat_stored", "J/m", "heat that the body holds more than at t = 0", |r| &mut r.heat.energy.stored),
+    real("energy/heat_convected", "J/m", "heat given to the air beside the contact since t = 0", |r| &mut r.heat.energy.convected),
+    real("energy/heat_conducted", "J/m", "heat given to the base since t = 0", |r| &mut r.heat.energy.conducted),
+];
+
 /// All history columns of a run, `time` last.
-pub(super) fn history(Extra { energy, mounts, wear, .. }: Extra) -> impl Iterator<Item = &'static Column> {
+pub(super) fn history(Extra { energy, mounts, wear, heat, .. }: Extra) -> impl Iterator<Item = &'static Column> {
     let mounted = energy && mounts != [false; 2];
     let ends = MOUNTS.iter().zip(mounts).filter_map(|(column, there)| there.then_some(column));
     let energies = ENERGY.iter().filter(move |_| energy).chain(MOUNT_ENERGY.iter().filter(move |_| mounted));
     let worn = [(&WEAR_ENERGY, energy && wear), (&WORN, wear)]
         .into_iter()
         .filter_map(|(column, there)| there.then_some(column));
-    energies.chain(worn).chain(ends).chain(HISTORY)
+    let warm = HEAT_ENERGY.iter().filter(move |_| heat && energy).chain(HEAT.iter().filter(move |_| heat));
+    energies.chain(worn).chain(ends).chain(warm).chain(HISTORY)
 }
 
 /// Whether a column has a component for each direction of the face.
@@ -340,11 +376,19 @@ const WORN_PROFILE: Field = field(
     (Components::Scalar, |f| &f.worn_profile),
 );
 
+/// Those of a body whose temperature is modelled.
+#[rustfmt::skip]
+const OF_HEAT: &[Field] = &[
+    field("temperature", "K", "temperature of the contact face", (Components::Scalar, |f| &f.temperature)),
+    field("heat_flux", "W/m^2", "heat that enters the body through the face, less what the air takes", (Components::Scalar, |f| &f.heat_flux)),
+];
+
 /// The fields of the face of a body of so many axes.
 pub(super) fn interface(axes: usize, extra: Extra) -> impl Iterator<Item = &'static Field> {
     let worn = [(&WORN_DEPTH, extra.wear), (&WORN_PROFILE, extra.worn_profile)];
     let worn = worn.into_iter().filter_map(|(field, there)| there.then_some(field));
-    INTERFACE.iter().chain(if axes == 3 { IN_SPACE } else { IN_PLANE }).chain(worn)
+    let of_heat = OF_HEAT.iter().filter(move |_| extra.heat);
+    INTERFACE.iter().chain(if axes == 3 { IN_SPACE } else { IN_PLANE }).chain(worn).chain(of_heat)
 }
 
 /// A nodal field of the bulk, j x nodes x components.
@@ -355,9 +399,25 @@ pub(super) struct BulkField {
     pub components: Components,
 }
 
-/// The nodal fields of `/bulk`; `time` follows them.
+/// The nodal fields of `/bulk` that all have.
 #[rustfmt::skip]
-pub(super) const BULK: &[BulkField] = &[
+const BULK: &[BulkField] = &[
     BulkField { name: "displacement", units: "m", long_name: "displacement", components: Components::Axes },
     BulkField { name: "stress", units: "Pa", long_name: "Cauchy stress at the nodes, tension positive", components: Components::Stress },
 ];
+
+/// Of a body whose temperature is modelled.
+const BULK_HEAT: &[BulkField] =
+    &[BulkField { name: "temperature", units: "K", long_name: "temperature", components: Components::Scalar }];
+
+/// The nodal fields of `/bulk`; `time` follows them.
+pub(super) fn bulk(extra: Extra) -> impl Iterator<Item = &'static BulkField> {
+    BULK.iter().chain(BULK_HEAT.iter().filter(move |_| extra.heat))
+}
+
+impl BulkField {
+    /// Numbers of a node in a body of so many axes.
+    pub fn width(&self, axes: usize) -> usize {
+        self.components.names(axes).len().max(1)
+    }
+}

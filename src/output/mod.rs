@@ -47,7 +47,7 @@ mod xdmf;
 
 use std::time::SystemTime;
 
-pub use columns::{Across, Extra, HistoryRow, InterfaceFrame, is_vector};
+pub use columns::{Across, Extra, HeatRow, HistoryRow, InterfaceFrame, is_vector};
 pub use recorder::Recorder;
 pub use resume::{Left, intact, left};
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use hdf5::types::VarLenUnicode;
 
-use super::columns::{self, BULK, Value};
+use super::columns::{self, Value};
 use super::{Extra, HistoryRow};
 use crate::error::{Error, Result, plain};
 use crate::input;
@@ -94,7 +94,8 @@ impl Results {
     pub fn extra(&self) -> Extra {
         let mounts = ["mount_normal", "mount_tangential"].map(|column| self.has(&format!("history/{column}")));
         let (wear, worn_profile) = (self.has("history/worn_volume"), self.has("interface/worn_profile"));
-        Extra { energy: self.has("history/energy/stored"), mounts, wear, worn_profile }
+        let [energy, heat] = ["energy/stored", "max_temperature"].map(|column| self.has(&format!("history/{column}")));
+        Extra { energy, mounts, wear, worn_profile, heat }
     }
 
     /// Whether the file has the dataset, such as `history/energy/stored` or `bulk/stress`.
@@ -171,8 +172,8 @@ impl Results {
 
     fn table(&self, group: &str, name: &str) -> Result<Field> {
         let mut field = self.field(&format!("{group}/{name}"))?;
-        let fields = [2, 3].into_iter().flat_map(|axes| columns::interface(axes, Extra::ALL)).map(|field| field.name);
-        let mut grow = fields.chain(BULK.iter().map(|field| field.name));
+        let face = |axes| columns::interface(axes, Extra::ALL).map(|field| field.name);
+        let mut grow = face(2).chain(face(3)).chain(columns::bulk(Extra::ALL).map(|field| field.name));
         if grow.any(|field| field == name) {
             let rows = self.field(&format!("{group}/time"))?.rows;
             field.rows = field.rows.min(rows);

@@ -27,7 +27,7 @@ pub(super) fn reopen(path: &Path, plan: Plan, rows: Rows) -> Result<State> {
     let begun = Instant::now().checked_sub(spent).unwrap_or_else(Instant::now);
     let mut state = State::new(store, plan, version, begun);
     if let (Some(mesh), false) = (state.mesh, times.is_empty()) {
-        xdmf::write(path, &state.version, mesh, &times)?;
+        xdmf::write(path, &state.version, (mesh, state.plan.extra), &times)?;
     }
     state.bulk_times = times;
     Ok(state)
@@ -74,7 +74,7 @@ pub(super) fn append(state: &mut State, results: &Results) -> Result<()> {
     if state.bulk_times.is_empty() {
         return Ok(());
     }
-    xdmf::write(state.store.path(), &state.version, mesh, &state.bulk_times)
+    xdmf::write(state.store.path(), &state.version, (mesh, state.plan.extra), &state.bulk_times)
 }
 
 fn append_table(state: &mut State, results: &Results, (table, skip): (Table, usize)) -> Result<()> {

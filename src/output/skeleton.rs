@@ -10,9 +10,9 @@ use hdf5::plist::link_create::CharEncoding;
 use hdf5::types::VarLenUnicode;
 use hdf5::{Dataset, H5Type, Location};
 
-use super::columns::{self, BULK, Components, Value};
+use super::columns::{self, Components, Value};
 use super::xdmf::MeshSize;
-use super::{BulkPlan, FacePlan, Metadata, Plan, Status};
+use super::{BulkPlan, Extra, FacePlan, Metadata, Plan, Status};
 use crate::error::{Error, Result, plain};
 
 /// The metadata of a file stands in one block of this size, so that one small write reaches all extents.
@@ -80,13 +80,13 @@ pub(super) fn write(
     skeleton.history(plan)?;
     skeleton.interface(plan)?;
     if let Some(bulk) = &plan.bulk {
-        skeleton.bulk(bulk)?;
+        skeleton.bulk(bulk, plan.extra)?;
     }
     skeleton.finish()?;
     let phase = file.dataset("history/phase")?;
     texts(&phase, "names", &plan.phase_names)?;
     if let Some(bulk) = &plan.bulk {
-        for field in BULK {
+        for field in columns::bulk(plan.extra).filter(|field| field.components != Components::Scalar) {
             let set = file.dataset(&format!("bulk/{}", field.name))?;
             texts(&set, "components", field.components.names(bulk.axes))?;
         }
@@ -202,14 +202,17 @@ impl<'a> Skeleton<'a> {
         self.fixed((group, components.scale()), &names, ("1", what), &[(components.scale(), names.len())])
     }
 
-    fn bulk(&mut self, plan: &BulkPlan) -> hdf5::Result<()> {
+    fn bulk(&mut self, plan: &BulkPlan, extra: Extra) -> hdf5::Result<()> {
         const GROUP: &str = "bulk";
         self.file.create_group(GROUP)?;
         let MeshSize { nodes, cells, axes, corners } = MeshSize::of(plan);
-        for field in BULK {
-            let row = [nodes, field.components.names(axes).len()];
-            let set = self.growing::<f64>(&format!("{GROUP}/{}", field.name), plan.frames, &row)?;
-            self.describe(set, (field.units, field.long_name), GROUP, &["time", "node", field.components.scale()]);
+        for field in columns::bulk(extra) {
+            let (row, scales): (&[usize], &[&str]) = match field.components {
+                Components::Scalar => (&[nodes], &["time", "node"]),
+                components => (&[nodes, components.names(axes).len()], &["time", "node", components.scale()]),
+            };
+            let set = self.growing::<f64>(&format!("{GROUP}/{}", field.name), plan.frames, row)?;
+            self.describe(set, (field.units, field.long_name), GROUP, scales);
         }
         self.time(GROUP, plan.frames)?;
         let (node, axis, cell, corner) = (("node", nodes), ("axis", axes), ("cell", cells), ("corner", corners));

@@ -5,7 +5,7 @@ use std::io;
 use std::os::unix::fs::{FileExt, MetadataExt};
 use std::path::{Path, PathBuf};
 
-use super::columns::{self, BULK};
+use super::columns;
 use super::scratch::scratch;
 use super::{Plan, Status, locate, skeleton};
 use crate::checksum::row_sum;
@@ -82,7 +82,8 @@ pub(super) fn names(table: Table, plan: &Plan) -> Vec<String> {
             fields.chain(["time"]).map(|name| format!("interface/{name}")).collect()
         }
         Table::Bulk if plan.bulk.is_some() => {
-            BULK.iter().map(|field| field.name).chain(["time"]).map(|name| format!("bulk/{name}")).collect()
+            let fields = columns::bulk(plan.extra).map(|field| field.name);
+            fields.chain(["time"]).map(|name| format!("bulk/{name}")).collect()
         }
         Table::Bulk => Vec::new(),
     }

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::BulkPlan;
-use super::columns::{self, BULK, Components};
+use super::columns::{self, Components};
 use super::scratch::scratch;
+use super::{BulkPlan, Extra};
 use crate::error::{Error, Result};
 
 /// How a file begins that this program wrote.
@@ -54,11 +54,11 @@ pub(super) fn remove_stale(results: &Path) -> Result<()> {
 }
 
 /// Writes the file anew with one grid for each of `times`, s; readers see the old one or the new one.
-pub(super) fn write(results: &Path, version: &str, mesh: MeshSize, times: &[f64]) -> Result<()> {
+pub(super) fn write(results: &Path, version: &str, (mesh, extra): (MeshSize, Extra), times: &[f64]) -> Result<()> {
     let path = beside(results);
     let scratch = scratch(&path);
     let name = results.file_name().unwrap_or_default().to_string_lossy();
-    let document = text(&escape(&name), version, mesh, times);
+    let document = text(&escape(&name), version, (mesh, extra), times);
     let outcome = std::fs::write(&scratch, document).and_then(|()| std::fs::rename(&scratch, &path));
     if outcome.is_err() {
         // The error at hand says more than one about a leftover.
@@ -69,7 +69,7 @@ pub(super) fn write(results: &Path, version: &str, mesh: MeshSize, times: &[f64]
 
 /// The document. x and z of a plane layer are ParaView's X and Y, and its displacement gets a zero third component; the
 /// components of the stress are scalars.
-fn text(name: &str, version: &str, mesh: MeshSize, times: &[f64]) -> String {
+fn text(name: &str, version: &str, (mesh, extra): (MeshSize, Extra), times: &[f64]) -> String {
     let MeshSize { nodes, cells, axes, corners } = mesh;
     let (topology, geometry) = match (axes, corners) {
         (3, 4) => ("Tetrahedron", "XYZ"),
@@ -99,7 +99,7 @@ fn text(name: &str, version: &str, mesh: MeshSize, times: &[f64]) -> String {
         </Geometry>
 "#
         );
-        for field in BULK {
+        for field in columns::bulk(extra) {
             attributes(&mut out, (name, mesh), (frame, frames), field);
         }
         out.push_str("      </Grid>\n");
@@ -147,6 +147,15 @@ fn attributes(
           </DataItem>"#
             );
             attribute(label, "Vector", &join);
+        }
+        (Components::Scalar, _) => {
+            let data = format!(
+                r#"<DataItem ItemType="HyperSlab" NumberType="Float" Precision="8" Dimensions="{nodes}">
+              <DataItem Dimensions="3 2" Format="XML">{frame} 0 1 1 1 {nodes}</DataItem>
+              <DataItem Format="HDF" NumberType="Float" Precision="8" Dimensions="{frames} {nodes}">{name}:/bulk/{label}</DataItem>
+            </DataItem>"#
+            );
+            attribute(label, "Scalar", &data);
         }
         (Components::Axes, _) => attribute(label, "Vector", &slab(0, width)),
         _ => {

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use super::keys::tables::{IN_PLANE, IN_SPACE};
 use super::{
-    Arm, Body, Extend, Indenter, Law, Layer, Material, Memory, MeshFile, Motion, Phase, Quadrature, Scene, Sides, Span,
-    Stepping, Strategy, WearLaw, Wearing, When, keys,
+    Arm, Body, Extend, Friction, Indenter, Law, Layer, Material, Memory, MeshFile, Motion, Phase, Quadrature, Scene,
+    Sides, Span, Stepping, Strategy, WearLaw, Wearing, When, keys,
 };
 use crate::error::{Error, Result};
 
@@ -27,6 +27,7 @@ pub(super) fn all(scene: &Scene, file: &Path) -> Result<()> {
         .and_then(|()| exact_laws(scene))
         .and_then(|()| load(scene))
         .and_then(|()| wear(scene))
+        .and_then(|()| heat(scene))
         .and_then(|()| scene.phases.iter().try_for_each(|phase| approach(phase, scene)))
         .and_then(|()| moments(&scene.output.bulk_at, &scene.phases))
         .map_err(|(key, reason)| Error::scene(file, key, reason))
@@ -46,14 +47,19 @@ pub(super) fn weights(arms: &[Arm]) -> std::result::Result<(), String> {
     }
 }
 
-/// A modulus from Young's can leave the range of numbers where that did not; memory is updated in one way.
-fn materials(materials: &[Material]) -> Check {
-    let path = |index: usize, key: &str| match (&materials[index].region, materials.len()) {
+/// The path of a key of a material.
+fn material_key(materials: &[Material], index: usize, key: &str) -> String {
+    match (&materials[index].region, materials.len()) {
         (Some(region), _) => format!("material.{region}.{key}"),
         (None, 1) => format!("material.{key}"),
         (None, _) => format!("material.{index}.{key}"),
-    };
+    }
+}
+
+/// A modulus from Young's can leave the range of numbers where that did not; memory is updated in one way.
+fn materials(materials: &[Material]) -> Check {
     let with_arms = || materials.iter().enumerate().filter(|(_, material)| !material.is_elastic());
+    let path = |index: usize, key: &str| material_key(materials, index, key);
     for (index, Material { shear_modulus, .. }) in materials.iter().enumerate() {
         if !(shear_modulus.is_finite() && *shear_modulus > 0.0) {
             let reason = format!("gives a shear modulus of {shear_modulus:?} Pa; give another");
@@ -236,6 +242,29 @@ fn adaptive(scene: &Scene) -> Check {
         return fail(&key, "needs memory = \"exponential\" in the material; or give steps");
     }
     Ok(())
+}
+
+/// Every material says how it conducts and holds heat; a coefficient of friction knows the temperature where there is one.
+fn heat(scene: &Scene) -> Check {
+    let Some(heat) = &scene.heat else {
+        return match scene.friction.as_ref().is_some_and(Friction::knows_temperature) {
+            true => fail("friction.coefficient", "knows no T without a [heat] table; give one, or leave T out"),
+            false => Ok(()),
+        };
+    };
+    for (index, Material { conductivity, heat_capacity, .. }) in scene.materials.iter().enumerate() {
+        for (key, value, unit) in [("conductivity", conductivity, "W/m/K"), ("heat_capacity", heat_capacity, "J/m^3/K")]
+        {
+            if value.is_none() {
+                let reason = format!("missing, and required by [heat]: give it in {unit}");
+                return fail(&material_key(&scene.materials, index, key), reason);
+            }
+        }
+    }
+    match heat.arms && scene.materials.iter().all(Material::is_elastic) {
+        true => fail("heat.arms", "is true, and no material has arms; leave it out"),
+        false => Ok(()),
+    }
 }
 
 /// A force or a mount holds the indenter by the condensed strategy, a mount in planned steps; not both of them along the approach.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use crate::expression::{Expression, Fault};
-use crate::friction::VARIABLES;
+use crate::friction::{TEMPERATURE, VARIABLES};
 use crate::table::Curve;
 
 /// The friction law.
@@ -49,7 +49,7 @@ pub enum Law {
 pub enum Coefficient {
     /// At least 0.
     Number(f64),
-    /// Of v, m/s, p, Pa, and s, m.
+    /// Of v, m/s, p, Pa, s, m, and T, K.
     Formula(String),
 }
 
@@ -70,6 +70,12 @@ impl Friction {
     /// Whether there is none in fact.
     pub fn is_none(&self) -> bool {
         self.coefficient == Coefficient::Number(0.0)
+    }
+
+    /// Whether the coefficient is a formula of the temperature.
+    pub fn knows_temperature(&self) -> bool {
+        let Coefficient::Formula(formula) = &self.coefficient else { return false };
+        self.expression(formula).is_ok_and(|expression| expression.has(TEMPERATURE))
     }
 
     /// The expression of a coefficient, with its tables.

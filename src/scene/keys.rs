@@ -101,6 +101,21 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// A number, or none for a word; one of them must be there.
+    pub fn number_or_word(&self, key: &str, word: &str) -> Result<Option<f64>> {
+        let Kind::NumberOrWord(quantity, _, what) = self.key(key)?.kind else {
+            return Err(self.not_a("number or word", key));
+        };
+        match self.table.get(key) {
+            None => Err(self.missing(key, what)),
+            Some(Value::String(text)) if text == word => Ok(None),
+            Some(value) => match number(value).filter(|number| number.is_finite() && quantity.accepts(*number)) {
+                Some(number) => Ok(Some(number)),
+                None => Err(self.must_be(key, what, value)),
+            },
+        }
+    }
+
     /// What a number at the key must be.
     fn quantity(&self, key: &str) -> Result<Quantity> {
         match self.key(key)?.kind {

@@ -7,6 +7,7 @@ mod checks;
 mod differences;
 mod document;
 mod friction;
+mod heat;
 mod include;
 mod indenter;
 mod kept;
@@ -32,6 +33,7 @@ pub use checks::whole_periods;
 pub use differences::{differences, obstacles};
 pub use document::parse;
 pub use friction::{Coefficient, Friction, Law};
+pub use heat::{Base, Convection, Heat};
 pub use include::{Load, include, open};
 pub use indenter::{Detrend, Extend, Indenter, Reading, Rms, Seam};
 pub(crate) use keys::nearest;
@@ -60,6 +62,9 @@ pub struct Scene {
     /// The friction law; none = frictionless.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction: Option<Friction>,
+    /// The temperature of the body; none = not modelled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heat: Option<Heat>,
     /// What is between the indenter and what moves it; none = it is moved as it is told.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mount: Option<Mount>,
@@ -181,6 +186,12 @@ pub struct Material {
     pub bulk_arms: Vec<Arm>,
     /// The update of the arms over a step.
     pub memory: Memory,
+    /// Of heat, W/m/K, > 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub conductivity: Option<f64>,
+    /// Heat capacity per volume, J/m^3/K, > 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heat_capacity: Option<f64>,
     /// Where all this comes from: the file, the power law and the error of its series, the shift of the times.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,

@@ -3,6 +3,7 @@
 
 mod body;
 mod friction;
+mod heat;
 mod indenter;
 pub(super) mod material;
 mod mount;
@@ -43,6 +44,7 @@ pub fn scene(table: &Table, file: &Path) -> Result<Scene> {
         indenter: indenter::read(&root.section("indenter")?)?,
         contact: contact(&root.section("contact")?, &body, &materials, &phases)?,
         friction: root.optional_section("friction")?.as_ref().map(friction::read).transpose()?,
+        heat: root.optional_section("heat")?.as_ref().map(heat::read).transpose()?,
         mount: root.optional_section("mount")?.as_ref().map(mount::read).transpose()?,
         wear: root.optional_section("wear")?.as_ref().map(wear::read).transpose()?,
         phases,

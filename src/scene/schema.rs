@@ -110,6 +110,7 @@ fn kind(kind: &Kind) -> Value {
     match kind {
         Kind::Number(quantity) => number(*quantity),
         Kind::NumberOrFormula(quantity) => json!({ "anyOf": [number(*quantity), { "type": "string" }] }),
+        Kind::NumberOrWord(quantity, word, _) => json!({ "anyOf": [number(*quantity), { "const": word }] }),
         Kind::Curves(_) => {
             let point = json!({ "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 });
             json!({ "type": "object", "additionalProperties": { "type": "array", "items": point } })

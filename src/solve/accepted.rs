@@ -3,7 +3,7 @@
 use super::Contact;
 use crate::energy::FaceEnergy;
 use crate::error::{Error, Result};
-use crate::interface::{Exchange, Interface, State};
+use crate::interface::{Exchange, Interface, Rub, State};
 use crate::loading::{DIRECTIONS, Mount, Phase, Placement};
 use crate::petsc::Step;
 use crate::snapshot::Snapshot;
@@ -26,6 +26,8 @@ pub struct AcceptedFace<const D: usize> {
     mounts: [Option<Mount>; DIRECTIONS],
     /// Only where the energy is asked for.
     exchange: Option<Exchange>,
+    /// What friction dissipated at each point over the last step, J/m (J in space); only where it heats.
+    rubbed: Option<Vec<f64>>,
 }
 
 impl<const D: usize> AcceptedFace<D> {
@@ -34,7 +36,7 @@ impl<const D: usize> AcceptedFace<D> {
         let at_rest = vec![0.0; D * interface.face().count()];
         let (rate, displacement) = (at_rest.clone(), at_rest);
         let (time, dt, origin) = (0.0, 1.0, [0.0; 2]);
-        Self { interface, phase: None, displacement, rate, time, dt, origin, mounts, exchange: None }
+        Self { interface, phase: None, displacement, rate, time, dt, origin, mounts, exchange: None, rubbed: None }
     }
 
     /// What the following steps are driven by.
@@ -115,6 +117,11 @@ impl<const D: usize> AcceptedFace<D> {
             *rate = (new - old) / placement.dt;
         }
         (self.displacement, self.time, self.dt) = (displacement, time, placement.dt);
+        if let Some(rubbed) = &mut self.rubbed {
+            let (law, points) = (self.interface.friction(), self.interface.points().all());
+            let ends = points.iter().zip(self.interface.states()).zip(&states);
+            *rubbed = ends.map(|((point, old), new)| point.weight * Rub::new(law, old, new).taken).collect();
+        }
         if let Some(exchange) = &mut self.exchange {
             exchange.advance(&mut self.interface, (placement, &self.mounts), &states)?;
         }
@@ -127,6 +134,11 @@ impl<const D: usize> AcceptedFace<D> {
         Ok(())
     }
 
+    /// Takes note of what friction dissipates, from here on.
+    pub fn keep_heat(&mut self) {
+        self.rubbed = Some(vec![0.0; self.interface.points().count()]);
+    }
+
     /// The energy that went through, where it is kept account of.
     pub fn energy(&self) -> Option<FaceEnergy> {
         self.exchange.as_ref().map(Exchange::energy)
@@ -134,7 +146,8 @@ impl<const D: usize> AcceptedFace<D> {
 
     /// The contact.
     pub fn contact(&mut self) -> Contact<'_> {
-        Contact { face: &mut self.interface, displacement: &self.displacement, dt: self.dt }
+        let rubbed = self.rubbed.as_deref();
+        Contact { face: &mut self.interface, displacement: &self.displacement, dt: self.dt, rubbed }
     }
 
     /// Adds it to a snapshot.

@@ -5,6 +5,7 @@ use nalgebra::SVector;
 
 use super::BulkFields;
 use crate::bulk::Bulk;
+use crate::element::conduction::Conduction;
 use crate::element::solid::{Answer, Dilatation, Placed, Split, Stress, row_major};
 use crate::error::Result;
 use crate::mesh::{Cell, Mesh, Numbering, Source};
@@ -86,6 +87,11 @@ impl<const D: usize> Cells<D> {
     /// The split stiffness of a cell.
     pub fn split(&self, cell: usize) -> Split<D> {
         self.placed(cell, |placed| placed.stiffness())
+    }
+
+    /// What a cell conducts and holds of heat, for unit conductivity and capacity.
+    pub fn conduction(&self, cell: usize) -> Conduction {
+        self.placed(cell, |placed| placed.conduction())
     }
 
     /// What is asked of a cell where it lies.

@@ -11,7 +11,7 @@ use mpi::traits::{Communicator, Root};
 use nalgebra::{SVector, Vector2};
 
 use super::accepted::AcceptedFace;
-use super::response::Response;
+use super::response::{Response, unprepared};
 use super::traction::{self, Answer, Behind, Held, Laws, Outcome, Site};
 use super::{BulkFields, Contact, TransientProblem, Work};
 use crate::energy::Energy;
@@ -527,6 +527,14 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
         self.response.keep_account(&self.displacement)
     }
 
+    fn keep_heat(&mut self) {
+        self.face.keep_heat();
+    }
+
+    fn warm(&mut self, face: &[f64]) {
+        self.face.interface.warm(face);
+    }
+
     fn energy(&self) -> Option<Energy> {
         self.face.energy().zip(self.response.energy()).map(|(face, body)| Energy::new(face, body))
     }
@@ -570,9 +578,4 @@ fn write<const D: usize>(u: &mut Vector, tractions: impl Iterator<Item = SVector
         place.copy_from_slice(value.as_slice());
     }
     Ok(())
-}
-
-/// A defect: a step goes on that never began.
-fn unprepared() -> Error {
-    Error::Internal("no step was prepared".into())
 }

@@ -6,6 +6,7 @@ mod body;
 mod condensed;
 mod driver;
 mod face;
+mod heat;
 mod monolithic;
 mod on_face;
 mod response;
@@ -22,6 +23,7 @@ use crate::snapshot::Snapshot;
 pub use body::{Body, Moduli, Region, Solid};
 pub use condensed::{Condensed, Freedom, LARGE_FACE, LARGE_PERIODIC_FACE, Way};
 pub use driver::{Counts, Driver, MAX_NEWTON, Position};
+pub use heat::{Convection, Heat, Heated, Medium, Thermal};
 pub use monolithic::Monolithic;
 pub use response::{
     Compliance, Following, Inside, Interior, Layered, Moving, PeriodicColumn, Relaxation, Relaxations, Remembering,
@@ -72,6 +74,14 @@ pub trait TransientProblem {
     fn commit(&mut self, step: Step, u: &mut Vector) -> Result<()>;
     /// Keeps account of the energy from here on, at rest; `layout` is that of the solution.
     fn keep_account(&mut self, layout: &Vector) -> Result<()>;
+    /// Takes note of what friction dissipates at each point, from here on.
+    fn keep_heat(&mut self);
+    /// Tells the laws the temperatures of the face's nodes, K.
+    fn warm(&mut self, face: &[f64]);
+    /// The temperatures at the accepted state, where they are solved for.
+    fn thermal(&self) -> Option<&Thermal> {
+        None
+    }
     /// What may help where a step does not converge however short.
     fn advice(&self) -> &'static str {
         ADVICE
@@ -115,9 +125,21 @@ pub struct Contact<'a> {
     pub displacement: &'a [f64],
     /// The length of the last step, s.
     dt: f64,
+    /// What friction dissipated at each point over it, J/m (J in space), where that is noted.
+    rubbed: Option<&'a [f64]>,
 }
 
 impl Contact<'_> {
+    /// What friction dissipated at each node over the last step, J/m (J in space), where that is noted.
+    pub fn rubbed(&self) -> Option<Vec<f64>> {
+        self.rubbed.map(|rubbed| self.face.at_nodes(rubbed))
+    }
+
+    /// What the nodes stand for of the face, and of that what is not in contact, m (m^2 in space).
+    pub fn areas(&self) -> [Vec<f64>; 2] {
+        self.face.areas()
+    }
+
     /// Where the indenter is.
     pub fn placement(&self) -> Placement {
         self.face.placement()
@@ -145,6 +167,8 @@ pub struct BulkFields {
     pub displacement: Vec<[f64; 3]>,
     /// Stress xx, yy, zz, xy, yz, xz, Pa, tension positive.
     pub stress: Vec<[f64; 6]>,
+    /// K; only with heat.
+    pub temperature: Vec<f64>,
 }
 
 /// Who is told of each accepted step.

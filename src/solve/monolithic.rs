@@ -288,6 +288,14 @@ impl<const D: usize> TransientProblem for Monolithic<D> {
         self.face.accepted.keep_account()
     }
 
+    fn keep_heat(&mut self) {
+        self.face.accepted.keep_heat();
+    }
+
+    fn warm(&mut self, face: &[f64]) {
+        self.face.accepted.interface.warm(face);
+    }
+
     fn energy(&self) -> Option<Energy> {
         self.face.accepted.energy().zip(self.bulk.energy()).map(|(face, body)| Energy::new(face, body))
     }

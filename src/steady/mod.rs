@@ -160,7 +160,7 @@ impl<const D: usize> On<D> {
     /// q of a node that slides along the heading, Pa, and dq/dp.
     fn shear(&self, velocity: f64, pressure: f64) -> [f64; 2] {
         let Some(law) = self.interface.friction() else { return [0.0; 2] };
-        let at = Circumstances { pressure, dt: SECOND, resolution: 0.0, slid: 0.0 };
+        let at = Circumstances { pressure, dt: SECOND, resolution: 0.0, slid: 0.0, temperature: 0.0 };
         let bound = law.strength().at(at, Lasting { length: velocity.abs() * SECOND, by_slip: 1.0 });
         [bound.value, bound.by_pressure].map(|value| value.copysign(value * velocity))
     }

@@ -8,6 +8,7 @@
 mod appendix_a;
 mod curve;
 mod half_space;
+mod heat;
 mod kernel;
 mod load;
 mod mount;
@@ -101,6 +102,17 @@ impl Row {
         Self::new(quantity, [fine, exact], 2.0 * predicted, "mesh: twice the error that half the cells predict")
     }
 
+    /// A quantity with steps and cells, with twice as long ones, and exactly, where the error is of first order: the coarser answer
+    /// predicts an error of the whole difference; twice that passes.
+    pub fn halved(quantity: impl Into<String>, [fine, coarse]: [f64; 2], exact: f64) -> Self {
+        Self::new(
+            quantity,
+            [fine, exact],
+            2.0 * (fine - coarse).abs(),
+            "steps: twice the error that half of them predict",
+        )
+    }
+
     /// The order of convergence of a quantity that two meshes, one of half the cells of the other, approximate.
     pub fn order(quantity: impl Into<String>, [fine, coarse]: [f64; 2], exact: f64) -> Self {
         let order = ((coarse - exact) / (fine - exact)).abs().log2();
@@ -183,6 +195,7 @@ pub fn cases(quick: bool) -> Result<Vec<Case>> {
     list.extend(load::cases(quick));
     list.extend(mount::cases(quick));
     list.extend(wear::cases(quick));
+    list.extend(heat::cases(quick)?);
     Ok(list)
 }
 

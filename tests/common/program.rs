@@ -1,9 +1,10 @@
 //! Runs the real program on a scene, in a directory of its own.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output};
+use std::time::{Duration, Instant};
 
-use mpjr::output::reader::Results;
+use mpjr::output::{checkpoint, reader::Results};
 use tempfile::TempDir;
 
 use super::mpi::mpirun;
@@ -256,4 +257,18 @@ pub fn assert_same(one: &Path, other: &Path, within: f64) {
 
 fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest, value| largest.max(value.abs()))
+}
+
+/// Waits until the checkpoint has been written `count` times more, or the program has ended.
+pub fn wait_for(child: &mut Child, results: &Path, count: usize) {
+    let written = || std::fs::metadata(checkpoint::beside(results)).and_then(|about| about.modified()).ok();
+    let (mut last, mut seen) = (written(), 0);
+    let begun = Instant::now();
+    while seen < count && child.try_wait().unwrap().is_none() {
+        let now = written();
+        seen += usize::from(now != last && now.is_some());
+        last = now;
+        assert!(begun.elapsed() < Duration::from_secs(120), "no checkpoint comes");
+        std::thread::sleep(Duration::from_millis(1));
+    }
 }

@@ -2,8 +2,8 @@
 
 use std::time::SystemTime;
 
-use mpjr::energy::{Energy, MountEnergy};
-use mpjr::output::{Across, BulkPlan, Extra, FacePlan, HistoryRow, InterfaceFrame, Metadata, Plan};
+use mpjr::energy::{Energy, HeatEnergy, MountEnergy};
+use mpjr::output::{Across, BulkPlan, Extra, FacePlan, HeatRow, HistoryRow, InterfaceFrame, Metadata, Plan};
 
 /// Nodes of the contact face.
 pub const FACE: usize = 5;
@@ -81,13 +81,24 @@ pub fn row(i: usize) -> HistoryRow {
             imbalance: 16.0 * v,
             mounts: MountEnergy { spring: 19.0 * v, dashpot: 20.0 * v, kinetic: 21.0 * v },
         },
+        heat: HeatRow {
+            highest: 26.0 * v,
+            mean: 27.0 * v,
+            energy: HeatEnergy { entered: 28.0 * v, stored: 29.0 * v, convected: 30.0 * v, conducted: 31.0 * v },
+        },
     }
 }
 
 /// The real columns of [`row`] other than time, with their factors.
-pub const COLUMNS: [(&str, f64); 24] = [
+pub const COLUMNS: [(&str, f64); 30] = [
     ("energy/wear", 25.0),
     ("worn_volume", 24.0),
+    ("max_temperature", 26.0),
+    ("mean_temperature", 27.0),
+    ("energy/heat", 28.0),
+    ("energy/heat_stored", 29.0),
+    ("energy/heat_convected", 30.0),
+    ("energy/heat_conducted", 31.0),
     ("energy/mount_spring", 19.0),
     ("energy/mount_dashpot", 20.0),
     ("energy/kinetic", 21.0),
@@ -112,7 +123,7 @@ pub const COLUMNS: [(&str, f64); 24] = [
     ("energy/imbalance", 16.0),
 ];
 
-/// Row `i` of the interface fields at face nodes 0, 1, ...: field number f (1 to 8) is 1000 f i + node.
+/// Row `i` of the interface fields at face nodes 0, 1, ...: field number f (1 to 10) is 1000 f i + node.
 pub fn frame(i: usize, face: usize) -> InterfaceFrame {
     let field = |f: usize| (0..face).map(|node| (1000 * f * i + node) as f64).collect();
     InterfaceFrame {
@@ -126,9 +137,21 @@ pub fn frame(i: usize, face: usize) -> InterfaceFrame {
         displacement: Vec::new(),
         worn_depth: field(7),
         worn_profile: field(8),
+        temperature: field(9),
+        heat_flux: field(10),
     }
 }
 
 /// The fields of [`frame`], in the order of their number f.
-pub const FIELDS: [&str; 8] =
-    ["pressure", "shear", "gap", "slip_rate", "displacement_x", "displacement_z", "worn_depth", "worn_profile"];
+pub const FIELDS: [&str; 10] = [
+    "pressure",
+    "shear",
+    "gap",
+    "slip_rate",
+    "displacement_x",
+    "displacement_z",
+    "worn_depth",
+    "worn_profile",
+    "temperature",
+    "heat_flux",
+];

@@ -9,6 +9,7 @@ mod reactions;
 mod space;
 mod stick_slip;
 mod stress;
+mod temperature;
 mod tractions;
 mod unit;
 mod wear;
@@ -99,7 +100,7 @@ const COORDINATES: &str = "interface/coordinates";
 const NO_LAYER: &str = "a body in space from a mesh (ParaView opens its XDMF file)";
 
 /// All figures of a result file.
-pub const FIGURES: [Kind; 12] = [
+pub const FIGURES: [Kind; 13] = [
     Kind { name: "history", shows: "forces against time", lacks: |_| None, sheet: history::sheet },
     Kind {
         name: "reactions",
@@ -115,6 +116,15 @@ pub const FIGURES: [Kind; 12] = [
             (!kept).then_some("no energies (the scene's output.energy switches them off)")
         },
         sheet: energy::sheet,
+    },
+    Kind {
+        name: "temperature",
+        shows: "temperature of the body, and where its heat goes, against time",
+        lacks: |run| {
+            let modelled = run.results.has("history/max_temperature");
+            (!modelled).then_some("no temperatures (the scene has no [heat] table)")
+        },
+        sheet: temperature::sheet,
     },
     Kind {
         name: "tractions",

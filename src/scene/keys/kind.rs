@@ -47,6 +47,8 @@ pub(crate) enum Kind {
     OneOrTwo(Quantity),
     /// Such a number, or a formula that gives one.
     NumberOrFormula(Quantity),
+    /// Such a number, or this word; what that is.
+    NumberOrWord(Quantity, &'static str, &'static str),
     /// A table of arrays of points.
     Curves(&'static str),
     /// A whole number of this range, its ends included.
@@ -94,7 +96,8 @@ impl Kind {
     pub fn what(&self) -> &'static str {
         match self {
             Self::Number(quantity) | Self::OneOrTwo(quantity) | Self::NumberOrFormula(quantity) => quantity.what,
-            Self::Count(what, _)
+            Self::NumberOrWord(_, _, what)
+            | Self::Count(what, _)
             | Self::Cells([what, _], _)
             | Self::Curves(what)
             | Self::Text(what)

@@ -5,6 +5,7 @@ use Bound::{At, Beyond};
 
 use super::kind::{Decision, Key, Keys, Kind};
 use super::quantity::{Bound, Quantity};
+use crate::scene::heat::INSULATED;
 use crate::scene::{
     Detrend, Element, Extend, Memory, PoissonRule, Quadrature, Seam, Sides, Strategy, WearLaw, Wearing,
 };
@@ -55,6 +56,7 @@ pub(crate) static SCENE: Keys = table(
         Key::new("indenter", Kind::Table(&INDENTER)).required(),
         Key::new("contact", Kind::Table(&CONTACT)).required(),
         Key::new("friction", Kind::Table(&FRICTION)),
+        Key::new("heat", Kind::Table(&HEAT)),
         Key::new("mount", Kind::Table(&MOUNT)),
         Key::new("wear", Kind::Table(&WEAR)),
         Key::new("phase", Kind::Tables("an array of tables, [[phase]]", &PHASE)).required(),
@@ -162,6 +164,8 @@ macro_rules! material {
             number("c1", Quantity::positive("a positive number")).about("of the WLF law"),
             number("c2", Quantity::positive("a positive difference of temperatures in K")).about("of the WLF law"),
             number("activation_energy", Quantity::positive("a positive energy in J/mol")).about("of the Arrhenius law"),
+            number("conductivity", Quantity::positive("a positive conductivity in W/m/K")).about("of heat, for [heat]"),
+            number("heat_capacity", Quantity::positive("a positive heat capacity per volume in J/m^3/K")).about("for [heat]"),
             Key::new("notes", Kind::Texts("an array of texts")).default("[]").about("copied to the results"),
             Key::new("file", Kind::Text("the path of a material file"))
                 .about("a TOML file that holds one [material] table, relative to the scene"),
@@ -330,6 +334,36 @@ static FRICTION: Keys = Keys {
         ],
     }),
 };
+
+const KELVIN: Quantity = Quantity::within("a temperature in K, at least 0", At(0.0), Bound::None);
+
+static HEAT: Keys = table(
+    "The temperature of the body, which what is dissipated heats. Without this table it is not modelled.",
+    &[
+        number("initial", KELVIN).required().about("of all of it"),
+        Key::new("base", Kind::NumberOrWord(KELVIN, INSULATED, "a temperature in K, at least 0, or \"insulated\""))
+            .required()
+            .about("of the lower face, of a mesh of what is fixed"),
+        Key::new("convection", Kind::Table(&CONVECTION)),
+        number("share", Quantity::within("a share from 0 to 1", At(0.0), At(1.0)))
+            .default("1.0")
+            .about("of the heat of friction that enters the body"),
+        Key::new("arms", Kind::Flag).default("false").about("whether what the arms dissipate heats, too"),
+        Key::new("coupled", Kind::Flag).default("false").about("not there yet"),
+    ],
+);
+
+static CONVECTION: Keys = table(
+    "To the air beside the contact; without this table the face is insulated there.",
+    &[
+        number(
+            "coefficient",
+            Quantity::within("a heat transfer coefficient in W/m^2/K, at least 0", At(0.0), Bound::None),
+        )
+        .required(),
+        number("temperature", KELVIN).required().about("of the air"),
+    ],
+);
 
 static MOUNT: Keys = table(
     "How the indenter is held: approach and velocity move the far ends. Without this table it is moved itself.",

@@ -203,6 +203,8 @@ impl Given {
             poisson_rule: self.poisson_rule,
             bulk_arms: self.bulk_arms,
             memory: self.memory,
+            conductivity: section.optional_number("conductivity")?,
+            heat_capacity: section.optional_number("heat_capacity")?,
             notes: self.notes,
         })
     }

@@ -25,10 +25,11 @@ pub use following::{Following, Relaxation};
 pub use interior::Interior;
 pub use kernel::Kernel;
 pub use layered::{Layered, PeriodicColumn, Relaxations};
-pub use remembering::{Inside, Remembering};
-pub use sparse::Sparse;
-pub use transform::Transform;
+pub use remembering::{Inside, Remembering, Solvers};
+pub use sparse::{Sparse, unprepared};
+pub use transform::{Transform, Wave};
 pub use travelling::{Moving, Travelling};
+pub use waves::{Elimination, Operator};
 
 /// What stands behind the face. All ranks call each method together; the compliance is on rank 0.
 pub trait Response<const D: usize> {

@@ -35,6 +35,8 @@ const APART: usize = 4;
 /// plus k; what is left out is the complex conjugate of what there is. Clones count together and share their room.
 #[derive(Clone)]
 pub struct Transform<const D: usize> {
+    /// Axes of the face.
+    axes: usize,
     lines: usize,
     columns: usize,
     forward: Arc<dyn RealToComplex<f64>>,
@@ -70,6 +72,7 @@ impl<const D: usize> Transform<D> {
             scratch: Vec::new(),
         };
         Self {
+            axes: counts.len(),
             lines,
             columns,
             forward,
@@ -106,7 +109,7 @@ impl<const D: usize> Transform<D> {
     pub fn angles(&self, wave: usize) -> [f64; 2] {
         let angle = |k: usize, count: usize| 2.0 * PI * k as f64 / count as f64;
         let last = angle(wave / self.lines, self.columns);
-        if D == 2 { [last, 0.0] } else { [angle(wave % self.lines, self.lines), last] }
+        if self.axes == 1 { [last, 0.0] } else { [angle(wave % self.lines, self.lines), last] }
     }
 
     /// For how many waves one stands: itself, and its conjugate where that is left out.

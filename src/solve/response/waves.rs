@@ -50,8 +50,23 @@ struct Row<const D: usize, T = f64> {
 impl<const D: usize> Operator<D> {
     /// Of columns of the given cells, from the face down; the lower side of the last one is clamped.
     pub fn new(cells: &[Blocks<D>], transform: &Transform<D>) -> Self {
-        let blocks = (0..transform.waves()).flat_map(|k| rows_of(cells, &transform.angles(k))).collect();
+        let blocks = (0..transform.waves()).flat_map(|k| rows_of(cells, &transform.angles(k)).0).collect();
         Self { rows: cells.len(), blocks }
+    }
+
+    /// The same with the lower side of the last cell free, which is one row more.
+    pub fn with_free_base(cells: &[Blocks<D>], transform: &Transform<D>) -> Self {
+        let of_wave = |k: usize| {
+            let (mut rows, diagonal) = rows_of(cells, &transform.angles(k));
+            rows.push(Row { diagonal, coupling: SMatrix::zeros() });
+            rows
+        };
+        Self { rows: cells.len() + 1, blocks: (0..transform.waves()).flat_map(of_wave).collect() }
+    }
+
+    /// Rows of each wave vector.
+    pub fn rows(&self) -> usize {
+        self.rows
     }
 
     /// sum_p factor_p part_p, of parts of one layer.
@@ -97,12 +112,21 @@ struct Pivot<const D: usize, T = f64> {
 }
 
 impl<const D: usize> Elimination<D> {
-    /// Of a positive definite operator.
+    /// Of a positive definite operator that resists nothing but the strain of its cells, over a clamped base.
     pub fn new(operator: &Operator<D>) -> Result<Self> {
+        Self::of(operator, true)
+    }
+
+    /// Of one whose rows resist by themselves, too, or whose base is free.
+    pub fn of_rows_that_hold(operator: &Operator<D>) -> Result<Self> {
+        Self::of(operator, false)
+    }
+
+    fn of(operator: &Operator<D>, in_series: bool) -> Result<Self> {
         let rows = operator.rows;
         let mut pivots = Vec::with_capacity(operator.blocks.len());
         for (k, blocks) in operator.blocks.chunks_exact(rows).enumerate() {
-            pivots.extend(eliminated(blocks, k)?);
+            pivots.extend(eliminated(blocks, in_series && k == 0)?);
         }
         Ok(Self { rows, pivots })
     }
@@ -155,16 +179,16 @@ pub fn face_compliance<const D: usize>(
     cells: &[Blocks<D>],
     transform: &Transform<D>,
 ) -> Result<Vec<SMatrix<f64, D, D>>> {
-    let of_wave = |k: usize| Ok(eliminated(&rows_of(cells, &transform.angles(k)), k)?[0].inverse);
+    let of_wave = |k: usize| Ok(eliminated(&rows_of(cells, &transform.angles(k)).0, k == 0)?[0].inverse);
     (0..transform.waves()).map(of_wave).collect()
 }
 
-/// The rows of wave vector `k`, eliminated; the first one is the uniform wave.
-fn eliminated<const D: usize, T: ComplexField + Copy>(rows: &[Row<D, T>], k: usize) -> Result<Vec<Pivot<D, T>>> {
+/// The rows of a wave vector, eliminated; `in_series` where they are springs in series, as to the uniform wave.
+fn eliminated<const D: usize, T: ComplexField + Copy>(rows: &[Row<D, T>], in_series: bool) -> Result<Vec<Pivot<D, T>>> {
     let mut below = SMatrix::zeros();
     let pivot = |(j, row): (usize, &Row<D, T>)| {
         let coupling = row.coupling;
-        if k > 0 {
+        if !in_series {
             below = inverse(row.diagonal - coupling * below * coupling.transpose())?;
             return Ok(Pivot { inverse: below, coupling });
         }
@@ -181,8 +205,8 @@ fn inverse<const D: usize, T: ComplexField + Copy>(stiffness: SMatrix<T, D, D>) 
     stiffness.try_inverse().ok_or_else(|| Error::Solver("the stiffness of the layer is singular".into()))
 }
 
-/// The rows of one wave vector; cells that follow their like cost nothing.
-fn rows_of<const D: usize>(cells: &[Blocks<D>], angles: &[f64; 2]) -> Vec<Row<D>> {
+/// The rows of one wave vector, and the block of the lower side of the last cell; cells that follow their like cost nothing.
+fn rows_of<const D: usize>(cells: &[Blocks<D>], angles: &[f64; 2]) -> (Vec<Row<D>>, SMatrix<f64, D, D>) {
     let mut rows: Vec<Row<D>> = Vec::with_capacity(cells.len());
     let mut above = SMatrix::zeros();
     let mut made = [SMatrix::zeros(); 3];
@@ -194,7 +218,7 @@ fn rows_of<const D: usize>(cells: &[Blocks<D>], angles: &[f64; 2]) -> Vec<Row<D>
         rows.push(Row { diagonal: above + upper, coupling });
         above = lower;
     }
-    rows
+    (rows, above)
 }
 
 /// A cell's stiffness between waves of the node rows above and below it: (upper, upper), (upper, lower), (lower, lower). Of two
@@ -202,8 +226,8 @@ fn rows_of<const D: usize>(cells: &[Blocks<D>], angles: &[f64; 2]) -> Vec<Row<D>
 fn cell_blocks<const D: usize>(cell: &Blocks<D>, angles: &[f64; 2]) -> [SMatrix<f64, D, D>; 3] {
     let lead = |[x, y]: [u8; 2]| Complex::from_polar(1.0, f64::from(x) * angles[0] + f64::from(y) * angles[1]);
     // The corners of the lower and of the upper side, in the same order; see crate::element::Multilinear.
-    let (lower, upper, places): (&[usize], &[usize], &[[u8; 2]]) = match D {
-        2 => (&[0, 1], &[3, 2], &[[0, 0], [1, 0]]),
+    let (lower, upper, places): (&[usize], &[usize], &[[u8; 2]]) = match cell.len() {
+        16 => (&[0, 1], &[3, 2], &[[0, 0], [1, 0]]),
         _ => (&[0, 1, 2, 3], &[4, 5, 6, 7], &[[0, 0], [1, 0], [1, 1], [0, 1]]),
     };
     let phase: Vec<Complex<f64>> = places.iter().map(|place| lead(*place)).collect();

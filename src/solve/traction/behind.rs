@@ -8,7 +8,7 @@ use super::super::accepted::AcceptedFace;
 use super::super::response::Compliance;
 use super::{Moduli, Site};
 use crate::error::Result;
-use crate::friction::Circumstances;
+use crate::friction::{Circumstances, Law};
 use crate::interface::{Interface, Point};
 use crate::loading::Placement;
 
@@ -157,14 +157,15 @@ impl<const D: usize> Behind<'_, D> {
         }
     }
 
-    /// How steeply friction may fall with the slip, Pa/m, at a point by what it has slid, under the highest pressure there is.
-    fn falls(&self, dt: f64) -> impl Fn(f64) -> f64 {
+    /// How steeply friction may fall with the slip, Pa/m, at a point by what it has slid and its temperature, under the highest pressure there is.
+    fn falls(&self, dt: f64) -> impl Fn(f64, f64) -> f64 {
         let pressure = self.interface.states().iter().map(|state| state.pressure).fold(0.0, f64::max);
         let law = self.interface.friction();
-        let at = move |slid| Circumstances { pressure, dt, resolution: 0.0, slid };
-        let fall = move |slid| law.map_or(0.0, |law| law.strength().steepest_fall(at(slid)));
-        let anywhere = law.is_none_or(|law| !law.strength().remembers()).then(|| fall(0.0));
-        move |slid| anywhere.unwrap_or_else(|| fall(slid))
+        let at = move |slid, temperature| Circumstances { pressure, dt, resolution: 0.0, slid, temperature };
+        let fall = move |slid, warm| law.map_or(0.0, |law| law.strength().steepest_fall(at(slid, warm)));
+        let alike = |law: &dyn Law| !law.strength().remembers() && !law.strength().knows_temperature();
+        let anywhere = law.is_none_or(alike).then(|| fall(0.0, 0.0));
+        move |slid, warm| anywhere.unwrap_or_else(|| fall(slid, warm))
     }
 
     /// The points in a step to `placement`, where the profile was placed, from the accepted face; `free` is what the nodes do
@@ -182,7 +183,7 @@ impl<const D: usize> Behind<'_, D> {
         let site = |(i, point): (usize, &Point<D>)| {
             let past = interface.points().at(i, accepted.displacement());
             let elastic = interface.friction().map_or(SVector::zeros(), |law| interface.states()[i].elastic(law));
-            let slid = interface.states()[i].slid;
+            let (slid, temperature) = (interface.states()[i].slid, interface.temperature(i));
             let vertical = interface.clearance(i, approach);
             let moved = interface.points().at(i, free).norm();
             let height = vertical + approach;
@@ -193,7 +194,8 @@ impl<const D: usize> Behind<'_, D> {
                 drive: way + past + elastic,
                 elastic,
                 slid,
-                moduli: first.unwrap_or_else(|| moduli(i)).above(falls(slid)),
+                temperature,
+                moduli: first.unwrap_or_else(|| moduli(i)).above(falls(slid, temperature)),
                 lengths: [
                     moved.max(approach.abs()).max(height.min(2.0 * approach.abs())),
                     moved.max(past.norm()).max(way.norm()),

@@ -27,7 +27,8 @@ pub fn branches<const D: usize>(
     let Some(law) = laws.friction.filter(|law| law.strength().varies()) else { return Ok(None) };
     let pressure = from.answers.iter().map(|answer| answer.pressure).fold(0.0, f64::max);
     let slid = sites.iter().map(|site| site.slid).fold(0.0, f64::max);
-    let at = Circumstances { pressure, dt: laws.dt, resolution: 0.0, slid };
+    let temperature = sites.iter().map(|site| site.temperature).fold(0.0, f64::max);
+    let at = Circumstances { pressure, dt: laws.dt, resolution: 0.0, slid, temperature };
     for rate in [0.0, law.strength().weakest(at)] {
         let frozen = Frozen { law, rate };
         let first = from.clone().under(sites, Laws { friction: Some(&frozen), ..laws });

@@ -60,6 +60,8 @@ pub struct Site<const D: usize> {
     pub elastic: SVector<f64, D>,
     /// What it has slid for good, m.
     pub slid: f64,
+    /// Its temperature at the beginning of the step, K.
+    pub temperature: f64,
     /// What the layer's answer to the point's own traction asks for.
     pub moduli: Moduli,
     /// What the digits of o and of s are taken from, m.
@@ -189,7 +191,8 @@ impl<const D: usize> Site<D> {
 
     /// In which its friction answers.
     pub fn circumstances(&self, pressure: f64, laws: Laws<'_>) -> Circumstances {
-        Circumstances { pressure, dt: laws.dt, resolution: laws.resolution, slid: self.slid }
+        let (slid, temperature) = (self.slid, self.temperature);
+        Circumstances { pressure, dt: laws.dt, resolution: laws.resolution, slid, temperature }
     }
 
     /// q*, and what is known of it.

@@ -23,7 +23,7 @@ impl<const D: usize> Vibration<D> {
             }
             row
         };
-        Ok(Self { pivots: eliminated(&(0..parts[0].rows).map(row).collect::<Vec<_>>(), wave)? })
+        Ok(Self { pivots: eliminated(&(0..parts[0].rows).map(row).collect::<Vec<_>>(), wave == 0)? })
     }
 
     /// P_0: the compliance of the face.
