@@ -9,7 +9,7 @@ use crate::element::solid::Blocks;
 use crate::error::Result;
 use crate::snapshot::Snapshot;
 use crate::solve::body::Solid;
-use crate::solve::response::{Compliance, Elimination, Operator, Solvers, Transform, Wave, unprepared};
+use crate::solve::response::{Compliance, Elimination, Kernel, Operator, Solvers, Transform, Wave, unprepared};
 
 /// The layer, as waves.
 pub struct LayeredConductor {
@@ -110,8 +110,8 @@ impl Conductor for LayeredConductor {
         let Self { parts, transform, solvers, .. } = self;
         solvers.select(dt, || {
             let elimination = Elimination::of_rows_that_hold(&Operator::sum(parts, &[1.0, 1.0 / dt]))?;
-            let waves = elimination.face().collect();
-            Ok(Solver { compliance: Compliance::of_periodic_layer(transform.clone(), waves)?, elimination })
+            let kernel = Kernel::new(elimination.face());
+            Ok(Solver { compliance: Compliance::of_periodic_layer(transform.clone(), kernel), elimination })
         })?;
         let rates: Vec<f64> = self.capacity.iter().map(|m| m / dt).collect();
         for (swept, theta) in self.swept.chunks_exact_mut(self.rows).zip(self.theta.chunks_exact(self.rows)) {
@@ -130,7 +130,8 @@ impl Conductor for LayeredConductor {
         self.past = source.map_or(0.0, |s| s.iter().skip(held).step_by(self.all_rows).sum());
         let elimination = &self.solvers.current().ok_or_else(unprepared)?.elimination;
         elimination.sweep(&mut self.swept);
-        self.face = self.transform.inverse(elimination.at_face(&self.swept).iter())?;
+        let at_face = elimination.at_face(&self.swept);
+        self.face = self.transform.inverse(|wave| &at_face[wave])?;
         Ok(())
     }
 
@@ -157,7 +158,7 @@ impl Conductor for LayeredConductor {
     fn field(&self) -> Result<Vec<f64>> {
         let mut field = vec![0.0; self.all_rows * self.transform.nodes()];
         for row in 0..self.rows {
-            let of_row = self.transform.inverse(self.theta.iter().skip(row).step_by(self.rows))?;
+            let of_row = self.transform.inverse(|wave| &self.theta[wave * self.rows + row])?;
             field.iter_mut().skip(row).step_by(self.all_rows).zip(of_row).for_each(|(place, theta)| *place = theta);
         }
         Ok(field)
