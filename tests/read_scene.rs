@@ -121,6 +121,16 @@ fn overrides_are_applied_in_order_by_name_and_by_index() {
     assert_eq!(scene.output.bulk_at[1], When::Time(1.0));
 }
 
+/// A whole phase, which may name a file and so acts early, leaves nothing of what was set in it before.
+#[test]
+fn a_whole_phase_replaces_what_was_set_before() {
+    let phase = "phase.phase-2={ name = \"phase-2\", velocity = 2.0, duration = 1.0, steps = 3 }";
+    let scene = read_set(SMALLEST, &["phase.phase-2.tolerance=1e-3", phase]).unwrap();
+    assert_eq!(scene.phases[1].stepping, Stepping::Steps(3));
+    let scene = read_set(SMALLEST, &[phase, "phase.phase-2.steps=5"]).unwrap();
+    assert_eq!(scene.phases[1].stepping, Stepping::Steps(5));
+}
+
 #[test]
 fn a_whole_table_can_be_set() {
     let file = PathBuf::from("sweep.toml");

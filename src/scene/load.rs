@@ -23,7 +23,7 @@ pub fn read(text: &str, source: &Source) -> Result<Scene> {
 pub fn read_with(text: &str, source: &Source, load: Load) -> Result<Scene> {
     let Source { file, overrides: typed } = source;
     let mut table = parse(text, file)?;
-    let (files, others): (Vec<_>, Vec<_>) = typed.iter().cloned().partition(|typed| overrides::names_file(typed));
+    let [files, others] = overrides::around_files(typed);
     let blame = |error| overrides::blame(error, typed);
     overrides::apply(&mut table, &files, file)?;
     include(&mut table, file, load).map_err(blame)?;

@@ -20,10 +20,26 @@ pub(super) fn apply(table: &mut Table, overrides: &[String], file: &Path) -> Res
     Ok(())
 }
 
-/// Whether an override may name a file, and so decides what other keys there are.
-pub(super) fn names_file(typed: &str) -> bool {
+/// The overrides that act before files are read, those that may name one and so decide what other keys there are, and the others.
+/// What one of the former replaces as a whole was set before it.
+pub(super) fn around_files(typed: &[String]) -> [Vec<String>; 2] {
     let names = |path: &str| names_whole_file(path) || matches!(path, "friction" | "friction.coefficient");
-    split(typed).is_ok_and(|(path, _)| names(path))
+    let replaced = |place: usize, path: &str| {
+        let keys = split_path(path);
+        let mut later = typed[place + 1..].iter().map(|typed| path_of(typed));
+        later.any(|later| names(&later) && keys.starts_with(&split_path(&later)))
+    };
+    let mut parts = [Vec::new(), Vec::new()];
+    for (place, typed) in typed.iter().enumerate() {
+        let path = path_of(typed);
+        parts[usize::from(!names(&path) && !replaced(place, &path))].push(typed.clone());
+    }
+    parts
+}
+
+/// The path of an override; nothing where there is none, which is said where it acts.
+fn path_of(typed: &str) -> String {
+    split(typed).map(|(path, _)| path.to_owned()).unwrap_or_default()
 }
 
 /// Whether the path is that of a material as a whole or of its file, or of a measured motion or what it may be in.
