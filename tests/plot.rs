@@ -157,7 +157,8 @@ fn a_run_has_eight_figures() {
     assert!(text.contains("the figure wear cannot be drawn: no wear (the scene's [wear] asks for it)"), "{text}");
     let (text, code) = fail(at, &["plot", "plain.h5", "figure7"]);
     assert!(
-        text.contains("no figure figure7; a result file has: history, reactions, energy, tractions") && code == 2,
+        text.contains("no figure figure7; a result file has: history, reactions, energy, temperature, tractions")
+            && code == 2,
         "{text}"
     );
 }

@@ -184,13 +184,13 @@ fn condensed_is_the_same_discrete_solution_in_space() {
     }
 }
 
-/// A body whose factor no machine has the memory for, some 500 n^(4/3) bytes for 48 million unknowns, is refused by `check` and `run` before
+/// A body whose factor no machine has the memory for, some 500 n^(4/3) bytes for 7 million unknowns, is refused by `check` and `run` before
 /// any is taken, with the remedy.
 #[test]
 fn bodies_beyond_the_memory_are_refused() {
     for command in ["check", "run"] {
         let run = Run::new(SPHERE);
-        let large = ["--set", "layer.sides=free", "--set", "layer.cells=[400,400,100]"];
+        let large = ["--set", "layer.sides=free", "--set", "layer.cells=[200,200,60]"];
         let mut program = program(1);
         program.current_dir(run.directory()).args([command, "scene.toml"]).args(large);
         let message = ends_with(&mut program, 2);
@@ -279,7 +279,8 @@ fn ranks_agree_in_space() {
 
 /// Without friction the pressures of a large periodic face are found by conjugate gradients, with a coefficient of 0 by Newton's method:
 /// to a tolerance of 1e-12 both are the same to 1e-10, of a rough profile that is pressed, slid and lifted, without penetration and with a
-/// penalty, whatever the memory, in space and in the plane; and at the default tolerance they take two steps of Newton's method at most.
+/// penalty, whatever the memory, in space and in the plane; and at the default tolerance a step takes three runs of them at most, each
+/// counted as a step of Newton's method.
 #[test]
 fn pressures_alone_are_what_newton_finds() {
     const SPACE: [&str; 2] = ["layer.width=[1.0,1.0]", "layer.cells=[24,24,6]"];
@@ -303,6 +304,6 @@ fn pressures_alone_are_what_newton_finds() {
             assert!(difference(&a, &b) < 1e-10, "{case:?} {name}: {}", difference(&a, &b));
         }
         let counted = solved(&text, &[case, &["solver.tolerance=1e-8"]].concat()).history("newton_iterations");
-        assert!(counted.iter().all(|count| *count <= 2.0), "{case:?}: {counted:?}");
+        assert!(counted.iter().all(|count| *count <= 3.0), "{case:?}: {counted:?}");
     }
 }

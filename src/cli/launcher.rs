@@ -17,8 +17,8 @@ pub fn is_first_process() -> bool {
     rank().is_none_or(|rank| rank == "0")
 }
 
-/// The terminal that the standard output of this process's launcher is, if there is a launcher and it has one. It may be some
-/// generations away, as the proxies of MPICH's mpiexec and Slurm's step daemon stand between.
+/// The terminal that the standard output of this process's launcher is, if there is a launcher and it has one. The launcher is the
+/// first ancestor whose output is another than this process's own, as shells that it started have the same.
 pub fn terminal_of_launcher() -> Option<PathBuf> {
     const GENERATIONS: usize = 4;
     rank()?;
@@ -28,11 +28,14 @@ pub fn terminal_of_launcher() -> Option<PathBuf> {
         stat.rsplit(')').next()?.split_whitespace().nth(1)?.parse().ok()
     };
     let ancestors = std::iter::successors(Some(std::os::unix::process::parent_id()), |&process| parent(process));
+    let output_of = |process: &str| std::fs::read_link(format!("/proc/{process}/fd/1")).ok();
+    let own = output_of("self")?;
     let mut outputs = ancestors
         .take(GENERATIONS)
         .filter(|&process| process > 1)
-        .filter_map(|process| std::fs::read_link(format!("/proc/{process}/fd/1")).ok());
-    outputs.find(|output| output.starts_with("/dev/pts") || output.starts_with("/dev/tty"))
+        .filter_map(|process| output_of(&process.to_string()));
+    let launchers = outputs.find(|output| *output != own)?;
+    (launchers.starts_with("/dev/pts") || launchers.starts_with("/dev/tty")).then_some(launchers)
 }
 
 /// How many processes a launcher says that it started.
