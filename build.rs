@@ -94,10 +94,21 @@ fn refuse_unfit(configured: &str) -> Result<(), String> {
     }
 }
 
+/// Functions that newer versions of PETSc call otherwise, by the names of the oldest.
+#[derive(Debug)]
+struct OlderNames;
+
+impl bindgen::callbacks::ParseCallbacks for OlderNames {
+    fn generated_name_override(&self, function: bindgen::callbacks::ItemInfo<'_>) -> Option<String> {
+        (function.name == "SNESLineSearchShellSetApply").then(|| "SNESLineSearchShellSetUserFunc".into())
+    }
+}
+
 /// The Rust declarations of what `src/petsc` calls.
 fn write_declarations(includes: &[PathBuf]) -> Result<(), String> {
     let mut builder = bindgen::Builder::default()
         .header("src/petsc/wrapper.h")
+        .parse_callbacks(Box::new(OlderNames))
         .clang_args(includes.iter().map(|path| format!("-I{}", path.display())))
         .allowlist_recursively(true)
         // MPI's types come from mpi-sys, so that a communicator of the `mpi` crate goes straight into PETSc.
