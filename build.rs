@@ -7,7 +7,7 @@ use std::process::ExitCode;
 const FUNCTIONS: &str = include_str!("src/petsc/functions.txt");
 
 /// The oldest PETSc that is tried, and the newest.
-const VERSIONS: [&str; 2] = ["3.18", "3.20"];
+const VERSIONS: [&str; 2] = ["3.18", "3.24"];
 
 fn main() -> ExitCode {
     match prepare() {

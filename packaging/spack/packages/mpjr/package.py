@@ -20,7 +20,7 @@ class Mpjr(Package):
     # bindgen reads PETSc's headers with libclang.
     depends_on("llvm+clang", type="build")
     depends_on("mpi")
-    depends_on("petsc@3.18:3.20+mpi+mumps~complex+double")
+    depends_on("petsc@3.18:3.24+mpi+mumps~complex+double")
     depends_on("hdf5@1.10:+mpi+hl")
 
     def setup_build_environment(self, env):
