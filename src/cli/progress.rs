@@ -50,9 +50,9 @@ pub struct Stage<'a> {
     pub phase: &'a str,
     /// s
     pub time: f64,
-    /// N/m
+    /// N/m, in space N.
     pub normal_force: f64,
-    /// N/m
+    /// The same, along x.
     pub tangential_force: f64,
     /// Newton iterations of the step.
     pub newton: usize,
@@ -93,13 +93,13 @@ impl Progress {
             Self::Claim { claim, total } => claim.borrow_mut().tell(stage.done, *total),
             Self::Bar(bar) => {
                 bar.set_position(done as u64);
-                bar.set_message(format!("{phase:.10}  N = {normal_force:.3e}  Q = {tangential_force:.3e} N/m"));
+                bar.set_message(format!("{phase:.10}  N = {normal_force:.3e}  Q = {tangential_force:.3e}"));
             }
             Self::Lines { total, last, begun, from } => {
                 let from = *from.get_or_insert(done.saturating_sub(1));
                 if phase_end || last.elapsed() >= LINE_EVERY {
                     tell(format_args!(
-                        "{done}/{total}  {phase}  t = {time:.4e} s  N = {normal_force:.5e}  Q = {tangential_force:.5e} N/m  \
+                        "{done}/{total}  {phase}  t = {time:.4e} s  N = {normal_force:.5e}  Q = {tangential_force:.5e}  \
                          {newton} Newton{}",
                         left(*begun, (done - from, total.saturating_sub(done)))
                     ));

@@ -225,7 +225,7 @@ pub struct Outcome {
 
 /// What `mpjr run` prints at the end.
 pub fn outcome(scene: &Scene, done: &Done) -> String {
-    let Done { outcome: Outcome { status, ranks, setup, total, counts }, last, warnings, .. } = done;
+    let Done { outcome: Outcome { status, ranks, setup, total, counts }, last, warnings, in_space, .. } = done;
     let (yes, no) = modelled(scene);
     let blas = match petsc::blas_library() {
         "reference" => "the reference (OpenBLAS is faster: Debian's libopenblas0-pthread)",
@@ -253,6 +253,7 @@ pub fn outcome(scene: &Scene, done: &Done) -> String {
             format!("; {factorisations} sparse factorisation(s), {solves} solves with them")
         }
     };
+    let along = |x: f64, y: f64| if *in_space { format!("({x:.6e}, {y:.6e})") } else { format!("{x:.6e}") };
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{:<15}{} at t = {:.6} s", "status:", status.as_str(), last.time);
@@ -262,8 +263,12 @@ pub fn outcome(scene: &Scene, done: &Done) -> String {
     text += &material::lines(scene);
     let _ = writeln!(
         text,
-        "{:<15}N = {:.6e}  Q = {:.6e}  hysteretic = {:.6e} N/m",
-        "final forces:", last.normal_force, last.tangential_force, last.hysteretic_force
+        "{:<15}N = {:.6e}  Q = {}  hysteretic = {} {}",
+        "final forces:",
+        last.normal_force,
+        along(last.tangential_force, last.across.tangential_force),
+        along(last.hysteretic_force, last.across.hysteretic_force),
+        if *in_space { "N" } else { "N/m" }
     );
     let _ = writeln!(
         text,
@@ -271,7 +276,7 @@ pub fn outcome(scene: &Scene, done: &Done) -> String {
         "final contact:", last.contact_fraction, last.stick_fraction, last.max_penetration, last.stuck_slip
     );
     if scene.output.energy {
-        let _ = writeln!(text, "{:<15}{}", "energy:", balance(&last.energy));
+        let _ = writeln!(text, "{:<15}{}", "energy:", balance(&last.energy, if *in_space { "J" } else { "J/m" }));
     }
     let work = format!("{} steps{rejected}{pieces}, {} Newton iterations{sparse}", counts.steps, counts.newton);
     let _ = writeln!(text, "{:<15}{work}", "work:");
@@ -299,7 +304,7 @@ pub fn outcome(scene: &Scene, done: &Done) -> String {
 }
 
 /// The energy balance as a sum.
-fn balance(energy: &Energy) -> String {
+fn balance(energy: &Energy, unit: &str) -> String {
     let Energy {
         external_work,
         stored,
@@ -318,7 +323,7 @@ fn balance(energy: &Energy) -> String {
     };
     format!(
         "work {external_work:.3e} = stored {stored:.3e} + arms {viscoelastic_dissipation:.3e} + friction \
-         {friction_dissipation:.3e}\n{:15}+ penalty {penalty:.3e}{worn}{held} + imbalance {imbalance:.3e} J/m",
+         {friction_dissipation:.3e}\n{:15}+ penalty {penalty:.3e}{worn}{held} + imbalance {imbalance:.3e} {unit}",
         ""
     )
 }

@@ -64,8 +64,9 @@ pub fn imbalance(after: &After<'_>) -> Option<Warning> {
     if !above(imbalance, MOST_IMBALANCE * work) {
         return None;
     }
+    let unit = if after.in_space { "J" } else { "J/m" };
     let text = format!(
-        "the energies do not balance: {imbalance:.3e} J/m are left over of {work:.3e} J/m of work, {:.3} of it (more than \
+        "the energies do not balance: {imbalance:.3e} {unit} are left over of {work:.3e} {unit} of work, {:.3} of it (more than \
          {MOST_IMBALANCE}); take more steps, more cells, or a profile without kinks between nodes",
         imbalance / work
     );
