@@ -20,14 +20,14 @@ pub(super) fn apply(table: &mut Table, overrides: &[String], file: &Path) -> Res
     Ok(())
 }
 
-/// The overrides that act before files are read, those that may name one and so decide what other keys there are, and the others.
-/// What one of the former replaces as a whole was set before it.
+/// The overrides that act before files are read, those that may name one and so decide what other keys there are, and the others. A
+/// phase as a whole, which few of them have a file for, still replaces what was set in it before.
 pub(super) fn around_files(typed: &[String]) -> [Vec<String>; 2] {
     let names = |path: &str| names_whole_file(path) || matches!(path, "friction" | "friction.coefficient");
     let replaced = |place: usize, path: &str| {
         let keys = split_path(path);
         let mut later = typed[place + 1..].iter().map(|typed| path_of(typed));
-        later.any(|later| names(&later) && keys.starts_with(&split_path(&later)))
+        keys[0] == "phase" && later.any(|later| names(&later) && keys.starts_with(&split_path(&later)))
     };
     let mut parts = [Vec::new(), Vec::new()];
     for (place, typed) in typed.iter().enumerate() {

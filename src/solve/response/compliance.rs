@@ -197,21 +197,15 @@ impl<const D: usize> Compliance<D> {
 
     /// The displacement of node i under unit forces on node j, m per N/m.
     pub fn block(&self, i: usize, j: usize) -> SMatrix<f64, D, D> {
-        let mut block = SMatrix::<f64, D, D>::zeros();
-        let (source, first) = match &self.form {
-            Form::Periodic { own, .. } if i == j => return *own,
-            Form::Dense { values, .. } => {
-                (D * i, (0..D).map(|k| &values[(D * j + k) * self.order..]).collect::<Vec<_>>())
-            }
+        match &self.form {
+            Form::Periodic { own, .. } if i == j => *own,
+            Form::Dense { values, .. } => SMatrix::from_fn(|row, k| values[(D * j + k) * self.order + D * i + row]),
             Form::Periodic { transform, kernel, first, .. } => {
                 let first = first.get_or_init(|| columns_of_a_node(transform, kernel));
-                (D * transform.apart(i, j), first.iter().map(|column| &column[..]).collect())
+                let source = D * transform.apart(i, j);
+                SMatrix::from_fn(|row, k| first[k][source + row])
             }
-        };
-        for (k, column) in first.into_iter().enumerate() {
-            block.column_mut(k).copy_from_slice(&column[source..][..D]);
         }
-        block
     }
 
     /// About the smallest eigenvalue of C over what is not held, m per N/m: of a periodic layer exactly, of any other face

@@ -132,7 +132,8 @@ impl<const D: usize> Behind<'_, D> {
                 })
                 .sum(),
         };
-        let with_give = |i: &usize| match self.give(j).filter(|_| *i == j) {
+        let give = self.give(j);
+        let with_give = |i: &usize| match give.filter(|_| *i == j) {
             Some(give) => of_point(i) + SMatrix::from_diagonal(&give),
             None => of_point(i),
         };
