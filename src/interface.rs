@@ -342,10 +342,8 @@ impl<const D: usize> Interface<D> {
             slip_rate: none,
             worn: self.worn_fields(),
         };
-        let mut length = vec![0.0; nodes];
-        for (i, point) in self.points.all().iter().enumerate() {
-            self.points.shares(i).iter().for_each(|&(node, share)| length[node] += share * point.weight);
-        }
+        let weights: Vec<f64> = self.points.all().iter().map(|point| point.weight).collect();
+        let length = self.at_nodes(&weights);
         for (i, (point, state)) in self.points.all().iter().zip(&self.accepted).enumerate() {
             for &(node, share) in self.points.shares(i) {
                 let part = share * point.weight / length[node];
