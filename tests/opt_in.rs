@@ -48,6 +48,7 @@ static CASES: &[Case] = &[
     Case::new("friction_brings_its_law", &[1], friction),
     Case::new("bulk_output_brings_a_recovery_each_time", &[1], bulk_output),
     Case::new("one_factorisation_serves_for_all_steps", &[1, 2], factorisations),
+    Case::new("columns_of_one_node_serve_a_periodic_face", &[1, 2], columns),
 ];
 
 fn main() {
@@ -116,4 +117,13 @@ fn factorisations(comm: &SimpleCommunicator, _directory: &Path) {
         // Two a Newton iteration and one for each component that came into contact.
         assert!(work.solves > 0);
     }
+}
+
+/// The monolithic strategy takes the columns of the face's compliance from one node of a periodic layer, two solves, and a start
+/// that meets the laws takes three a step: free motion, tractions, and what round-off left. Newton's method has nothing to
+/// do then, which it would have with a wrong compliance.
+fn columns(comm: &SimpleCommunicator, _directory: &Path) {
+    let changes = ["solver.strategy=monolithic", "layer.sides=periodic", "contact.penalty=1e9"];
+    let work = work(comm, &format!("{BARE}{FRICTION}"), &changes);
+    assert_eq!(work.solves, 2 + 3 * 7);
 }

@@ -71,7 +71,9 @@ pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<
     let (clock, started) = (Instant::now(), SystemTime::now());
     // First what the scene may be refused for.
     let parts = composition::prepare(comm, scene, job.file)?;
-    let doubts = (comm.rank() == 0).then(|| Doubts::of(scene, &Outline::of(scene, &parts.mesh), &parts.shape));
+    let outline = (comm.rank() == 0).then(|| Outline::of(scene, &parts.mesh));
+    let doubts = outline.as_ref().map(|outline| Doubts::of(scene, outline, &parts.shape));
+    let unknowns = outline.map_or(0, |outline| outline.unknowns);
     let problem = composition::assemble(comm, scene, (parts.mesh, parts.shape.surface), job.compliances)?;
     let Problem { mut strategy, mut tangent, mut u, phases, mut integrator, mesh } = problem;
     let first = solution::first_row(strategy.as_ref());
@@ -112,7 +114,7 @@ pub fn solve(job: &Job<'_>, progress: impl FnOnce(usize) -> Progress) -> Result<
         Err(Error::Solver(_) | Error::Domain(_)) => Status::NotConverged,
         Err(_) => Status::Stopped,
     };
-    let outcome = Outcome { status, ranks: comm.size(), setup, total: clock.elapsed(), counts };
+    let outcome = Outcome { status, ranks: comm.size(), unknowns, setup, total: clock.elapsed(), counts };
     recording.end_progress();
     let mut doubted = Ok(());
     let mut warnings = Vec::new();

@@ -14,7 +14,8 @@ use crate::warnings::Warning;
 
 /// What a run did, with its results at `out`: the last row of the history under its names there.
 pub fn outcome(scene: &Scene, done: &Done, out: &Path) -> Value {
-    let Done { outcome: Outcome { status, ranks, setup, total, counts }, last, warnings, result, in_space } = done;
+    let Done { outcome: Outcome { status, ranks, unknowns, setup, total, counts }, last, warnings, result, in_space } =
+        done;
     json!({
         "title": scene.title,
         "status": status.as_str(),
@@ -30,6 +31,7 @@ pub fn outcome(scene: &Scene, done: &Done, out: &Path) -> Value {
         "newton_iterations": counts.newton,
         "transforms": counts.work.transforms,
         "ranks": ranks,
+        "unknowns": unknowns,
         "wall_seconds": total.as_secs_f64(),
         "setup_seconds": setup.as_secs_f64(),
         "peak_memory_bytes": petsc::peak_memory(),

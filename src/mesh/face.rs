@@ -177,6 +177,11 @@ impl Grid {
         self.axes.iter().map(|axis| axis.places.len()).collect()
     }
 
+    /// Whether it repeats along every axis.
+    pub fn is_periodic(&self) -> bool {
+        self.axes.iter().all(|axis| axis.period.is_some())
+    }
+
     /// How far apart neighbours along an axis are in the order of nodes.
     pub fn stride(&self, axis: usize) -> usize {
         self.axes[axis + 1..].iter().map(|axis| axis.places.len()).product()
@@ -191,6 +196,17 @@ impl Grid {
         let after = if at + 1 < count { Some(node + stride) } else { around.then(|| node - (count - 1) * stride) };
         [before, after]
     }
+}
+
+/// The node that is as far from the first as node i is from node j, on a grid of so many places along each axis that repeats
+/// along all of them.
+pub fn apart(counts: &[usize], mut i: usize, mut j: usize) -> usize {
+    let (mut node, mut stride) = (0, 1);
+    for &count in counts.iter().rev() {
+        node += stride * ((i % count + count - j % count) % count);
+        (i, j, stride) = (i / count, j / count, stride * count);
+    }
+    node
 }
 
 impl Axis {
@@ -250,6 +266,8 @@ mod tests {
         let grid = Grid { axes: vec![axis(3, Some(3.0)), axis(2, None)] };
         assert_eq!((grid.beside(0, 0), grid.beside(5, 0)), ([Some(4), Some(2)], [Some(3), Some(1)]));
         assert_eq!((grid.beside(4, 1), grid.beside(5, 1)), ([None, Some(5)], [Some(4), None]));
+        // Over the ends of both axes: (0, 0) from (2, 1) as (1, 1) from (0, 0).
+        assert_eq!((apart(&grid.counts(), 0, 5), apart(&grid.counts(), 4, 2)), (3, 2));
         assert_eq!(grid.axes[0].between(-0.75), Some([(2, 0.75), (0, 0.25)]));
         assert_eq!((grid.axes[1].between(1.0), grid.axes[1].between(1.5)), (Some([(1, 1.0), (1, 0.0)]), None));
     }

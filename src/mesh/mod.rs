@@ -9,7 +9,7 @@ mod layer;
 mod partition;
 
 pub use cell::Cell;
-pub use face::{Axis, Face, Facet, FacetPoint, Grid};
+pub use face::{Axis, Face, Facet, FacetPoint, Grid, apart};
 pub use layer::{Layer, Sides, Span};
 pub use partition::Numbering;
 

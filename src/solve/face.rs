@@ -98,7 +98,7 @@ impl<const D: usize> ContactFace<D> {
     /// Judges a Newton iterate by the norm of its residual: converged below `tolerance` times the scale of the contact
     /// forces (at this or the accepted state, the larger; without contact, times the first norm of the step), or at
     /// the noise that round-off leaves, `noise` and that of the laws. At least one iteration is made unless the first guess is
-    /// as good as round-off, or `started`.
+    /// as good as round-off, or `started`: has solved the step already.
     pub fn test(&mut self, iteration: usize, norm: f64, tolerance: f64, noise: f64, started: bool) -> Result<Verdict> {
         if iteration == 0 {
             self.first_norm = norm;
@@ -108,7 +108,7 @@ impl<const D: usize> ContactFace<D> {
         }
         let scale = self.contact_norm().max(self.scale);
         let reference = if scale > 0.0 { scale } else { self.first_norm };
-        let share = if iteration == 0 { 8.0 * f64::EPSILON } else { tolerance };
+        let share = if iteration == 0 && !started { 8.0 * f64::EPSILON } else { tolerance };
         let converged = norm <= share * reference
             || (iteration > 0 || started)
                 && norm <= noise + 8.0 * self.accepted.interface.noise(self.placement, &self.trial)?;

@@ -268,7 +268,6 @@ impl<const D: usize> TransientProblem for Monolithic<D> {
     }
 
     fn test(&mut self, iteration: usize, norm: f64) -> Verdict {
-        // From a start that met the laws there is nothing to be gained from the linear system within the noise.
         let judged = self.face.test(iteration, norm, self.tolerance, self.round_off.force, self.started);
         judged.unwrap_or(Verdict::Diverged)
     }

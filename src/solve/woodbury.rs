@@ -8,7 +8,8 @@
 //! (l + C T) x_G = (A0^-1 b)_G,     x = A0^-1 (b - P T x_G) / l,     C = (A0^-1)_GG
 //! ```
 //!
-//! C is had by blocks of columns, when a node of theirs first comes into contact. What round-off leaves is for the
+//! C is had by blocks of columns, when a node of theirs first comes into contact; of a face that repeats itself along every
+//! direction the columns of one node are those of all, moved along. What round-off leaves is for the
 //! Krylov method around it. Nothing here depends on earlier steps, to the last digit.
 
 use std::ops::Range;
@@ -22,7 +23,7 @@ use super::on_face::{Factor, SparseColumns};
 use super::response::Compliance;
 use crate::bulk::Bulk;
 use crate::error::{Error, Result};
-use crate::mesh::Face;
+use crate::mesh::{Face, Grid, apart};
 use crate::petsc::{Cholesky, Matrix, Vector};
 
 /// Columns of C that are had together, which takes a fraction of the time of as many single solves.
@@ -53,6 +54,8 @@ struct Base<const D: usize> {
     compliance: Compliance<D>,
     /// Which of its columns are known.
     known: Vec<bool>,
+    /// How many nodes there are along each direction, where the face repeats itself from one to the next.
+    repeats: Option<Vec<usize>>,
     /// l of the last tangent: the secant of the first part.
     scale: f64,
 }
@@ -143,6 +146,11 @@ impl<const D: usize> Woodbury<D> {
             factor: Cholesky::new(&matrix)?,
             compliance: Compliance::unknown(face),
             known: vec![false; self.rows.len()],
+            repeats: face
+                .grid
+                .as_ref()
+                .filter(|grid| grid.is_periodic() && !self.held.contains(&true))
+                .map(Grid::counts),
             scale,
         });
         Ok(())
@@ -159,32 +167,45 @@ impl<const D: usize> Woodbury<D> {
 
     /// Makes the columns of C known that are in a block that is needed.
     fn complete(&mut self, needed: impl Fn(&Range<usize>) -> bool) -> Result<()> {
-        let Some(base) = &mut self.base else { return Ok(()) };
-        let all: Vec<i32> = self.ascending.iter().map(|&place| self.rows[place].0).collect();
-        let local: Vec<Option<usize>> = self.ascending.iter().map(|&place| self.rows[place].1).collect();
+        let order = self.rows.len();
         // In whole blocks, always the same ones: then a column has the same digits whatever came before it.
-        let order = base.known.len();
         for first in (0..order).step_by(BLOCK) {
             let block = first..order.min(first + BLOCK);
-            if base.known[first] || !needed(&block) {
-                continue;
-            }
-            let columns: Vec<i32> = block.clone().map(|place| self.rows[place].0).collect();
-            let entries = if self.comm.size() == 1 {
-                base.factor.inverse_entries(&self.comm, &all, &columns)?
-            } else {
-                let own = base.factor.solved_entries(&self.comm, &local, &columns)?;
-                let mut entries = vec![0.0; own.len()];
-                self.comm.all_reduce_into(&own[..], &mut entries[..], SystemOperation::sum());
-                entries
-            };
-            for (column, entries) in block.clone().zip(entries.chunks_exact(order)) {
-                if !self.held[column] {
-                    base.compliance.set_column(column, &self.ascending, entries);
+            match &self.base {
+                Some(base) if !base.known[first] && needed(&block) => {
+                    let one_for_all = base.repeats.is_some();
+                    self.learn(if one_for_all { 0..D } else { block })?;
                 }
-                base.known[column] = true;
+                _ => {}
             }
-            self.done[1] += block.len();
+        }
+        Ok(())
+    }
+
+    /// Makes the columns of a block known, and those that are the same from other nodes.
+    fn learn(&mut self, block: Range<usize>) -> Result<()> {
+        let Some(base) = &mut self.base else { return Ok(()) };
+        let columns: Vec<i32> = block.clone().map(|place| self.rows[place].0).collect();
+        let entries = if self.comm.size() == 1 {
+            let all: Vec<i32> = self.ascending.iter().map(|&place| self.rows[place].0).collect();
+            base.factor.inverse_entries(&self.comm, &all, &columns)?
+        } else {
+            let local: Vec<Option<usize>> = self.ascending.iter().map(|&place| self.rows[place].1).collect();
+            let own = base.factor.solved_entries(&self.comm, &local, &columns)?;
+            let mut entries = vec![0.0; own.len()];
+            self.comm.all_reduce_into(&own[..], &mut entries[..], SystemOperation::sum());
+            entries
+        };
+        self.done[1] += block.len();
+        for (column, entries) in block.zip(entries.chunks_exact(self.rows.len())) {
+            if !self.held[column] {
+                base.compliance.set_column(column, &self.ascending, entries);
+            }
+            base.known[column] = true;
+        }
+        if let Some(counts) = &base.repeats {
+            base.compliance.repeat_first_node(|i, j| apart(counts, i, j));
+            base.known.fill(true);
         }
         Ok(())
     }

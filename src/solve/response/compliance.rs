@@ -96,6 +96,19 @@ impl<const D: usize> Compliance<D> {
         }
     }
 
+    /// Makes all columns known from those of the first node, of a face that looks the same from every node: `apart` gives the node
+    /// that is as far from the first as one is from another.
+    pub fn repeat_first_node(&mut self, apart: impl Fn(usize, usize) -> usize) {
+        let Form::Dense { values, .. } = &mut self.form else { return };
+        let (first, others) = values.split_at_mut(D * self.order);
+        for (column, target) in others.chunks_exact_mut(self.order).enumerate() {
+            let (node, source) = (1 + column / D, &first[column % D * self.order..][..self.order]);
+            for (i, to) in target.chunks_exact_mut(D).enumerate() {
+                to.copy_from_slice(&source[D * apart(i, node)..][..D]);
+            }
+        }
+    }
+
     /// Of a periodic layer, with C of each of its waves.
     pub fn of_periodic_layer(transform: Transform<D>, kernel: Kernel<D>) -> Self {
         let order = D * transform.nodes();

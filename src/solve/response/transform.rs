@@ -16,6 +16,7 @@ use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 
 use crate::error::{Error, Result};
+use crate::mesh::apart;
 
 /// w of a row of nodes at one wave vector: (v, u_z) by (real, imaginary) part. Fields of a layer hold, for each wave vector,
 /// one of them per row from the face down.
@@ -100,9 +101,7 @@ impl<const D: usize> Transform<D> {
 
     /// The node that is as far from the first as node i is from node j.
     pub fn apart(&self, i: usize, j: usize) -> usize {
-        let (n, m) = (self.lines, self.columns);
-        let (line, column) = ((i / m + n - j / m) % n, (i % m + m - j % m) % m);
-        line * m + column
+        apart(&[self.lines, self.columns], i, j)
     }
 
     /// By what a wave leads from one node to the next along each axis of the face, in the order of the axes.
