@@ -70,8 +70,14 @@ impl<const D: usize> Split<D> {
 /// Blocks as one row-major matrix, corner by corner.
 pub fn row_major<const D: usize>(blocks: &[SMatrix<f64, D, D>]) -> Vec<f64> {
     let corners = blocks.len().isqrt();
-    let row = |a: usize, i: usize| (0..corners).flat_map(move |b| (0..D).map(move |j| blocks[a * corners + b][(i, j)]));
-    (0..corners).flat_map(|a| (0..D).flat_map(move |i| row(a, i))).collect()
+    let mut values = vec![0.0; blocks.len() * D * D];
+    for (a, rows) in values.chunks_exact_mut(corners * D * D).enumerate() {
+        for (k, value) in rows.iter_mut().enumerate() {
+            let (i, b, j) = (k / (corners * D), k / D % corners, k % D);
+            *value = blocks[a * corners + b][(i, j)];
+        }
+    }
+    values
 }
 
 impl<const D: usize> Placed<'_, D> {
