@@ -33,7 +33,7 @@ use crate::petsc::{Integrator, Linear, Matrix, Search, Settings, Vector};
 use crate::profile::{Extruded, Profile, Surface};
 use crate::scene::{self, Scene, Stepping, When};
 use crate::solve::{
-    Body, Compliance, Condensed, Convection, Following, Freedom, Heat, Heated, Inside, Interior, LARGE_FACE,
+    Body, Bordered, Compliance, Condensed, Convection, Following, Freedom, Heat, Heated, Inside, Interior, LARGE_FACE,
     LARGE_PERIODIC_FACE, Layered, MAX_NEWTON, Medium, Monolithic, PeriodicColumn, Relaxation, Relaxations, Remembering,
     Response, Solid, Sparse, TransientProblem, Way,
 };
@@ -221,13 +221,34 @@ fn monolithic<const D: usize>(
     if interface.friction().is_none() {
         tangent.declare_positive_definite()?;
     }
-    let settings = Settings { linear: Linear::Preconditioned, max_newton: MAX_NEWTON, search: Search::Least };
-    let integrator = Integrator::new(comm, settings, &mut tangent)?;
-    let mut strategy = Box::new(Monolithic::new(bulk, body, interface, &u, scene.solver.tolerance)?);
-    if integrator.asks_for_solves()? {
-        strategy.starts_from_the_laws();
+    let freedom = freedom::<D>(scene, solid.source.height());
+    let held = freedom.unknowns() > 0;
+    let parts = (interface, mounts::<D>(scene));
+    let mut strategy = Monolithic::new(bulk, body, parts, &u, scene.solver.tolerance)?;
+    let linear = if held { Linear::OwnPreconditioned } else { Linear::Preconditioned };
+    let settings = Settings { linear, max_newton: MAX_NEWTON, search: Search::Least };
+    if !held {
+        let integrator = Integrator::new(comm, settings, &mut tangent)?;
+        if integrator.asks_for_solves()? {
+            strategy.starts_from_the_laws();
+        }
+        return Ok(Strategy { strategy: Box::new(strategy), tangent, u, integrator });
     }
-    Ok(Strategy { strategy, tangent, u, integrator })
+    strategy.starts_from_the_laws();
+    let (strategy, u) = Bordered::new(comm, strategy, (tangent, u), freedom)?;
+    let mut tangent = Matrix::shell(comm, u.local_len())?;
+    let integrator = Integrator::new(comm, settings, &mut tangent)?;
+    if !integrator.asks_for_solves()? {
+        let reason = "the place of an indenter that a force or a mount holds is eliminated by a solver of its own: leave -pc_type out";
+        return Err(Error::Usage(reason.into()));
+    }
+    Ok(Strategy { strategy: Box::new(strategy), tangent, u, integrator })
+}
+
+/// What of the indenter's place may be unknown over a body of a height, m.
+fn freedom<const D: usize>(scene: &Scene, height: f64) -> Freedom {
+    let mounts = mounts::<D>(scene);
+    Freedom { directions: [scene.is_loaded(), mounts[1].is_some(), mounts[2].is_some()], height }
 }
 
 fn following<const D: usize>(
@@ -273,7 +294,7 @@ fn condensed<const D: usize, R: Response<D> + 'static>(
     let periodic = scene.layer().is_some_and(scene::Layer::is_periodic);
     let components = D * interface.face().count();
     let mounts = mounts::<D>(scene);
-    let freedom = Freedom { directions: [scene.is_loaded(), mounts[1].is_some(), mounts[2].is_some()], height };
+    let freedom = freedom::<D>(scene, height);
     let points = interface.points();
     let alone = interface.is_normal_alone() && !points.share_nodes();
     let way = match alone && periodic && components > LARGE_FACE && freedom.unknowns() == 0 {
@@ -405,15 +426,17 @@ fn clearance<const D: usize>(scene: &Scene, interface: &mut Interface<D>) -> Res
     Ok(gaps.fold(f64::INFINITY, f64::min))
 }
 
-/// The greatest penetration of the undeformed face that a history asks for, m, by approaches or by forces; only for scenes with adaptive
+/// The greatest penetration of the undeformed face that a history asks for, m, by approaches, by forces or on a mount; only for scenes with adaptive
 /// steps. The indenter touches after an approach by `clearance`, m.
 fn penetration(scene: &Scene, strategy: &mut dyn TransientProblem, clearance: f64) -> Result<f64> {
-    let force = scene.greatest_force();
+    let (force, place) = scene.mounted().unwrap_or((scene.greatest_force(), scene.deepest()));
     let pressed = match scene.is_adaptive() && force > 0.0 {
-        true => strategy.approach_under(force, scene.duration())?,
-        false => f64::NEG_INFINITY,
+        true => Some(strategy.approach_under(force, scene.duration())?),
+        false => None,
     };
-    let deepest = scene.deepest().max(pressed) - clearance;
+    // A mount brings the indenter no deeper than its force presses it, nor than its far end goes.
+    let reached = if scene.mounted().is_some() { f64::min } else { f64::max };
+    let deepest = pressed.map_or(place, |pressed| reached(place, pressed)) - clearance;
     // What never touches, or just so, is given its way of getting there.
     Ok(if deepest > 0.0 { deepest } else { clearance.abs().max(1e-200) })
 }
@@ -486,6 +509,15 @@ fn moments(phase: &Phase, bulk: &[f64], adaptive: bool) -> Vec<Moment> {
     all
 }
 
+/// How fast a dead load sets the indenter moving, m/s: at once where nothing slows it down.
+fn dropping(scene: &Scene) -> f64 {
+    let end = scene.mount.and_then(|mount| mount.normal).unwrap_or_default();
+    match end.load.unwrap_or(0.0) {
+        load if load > 0.0 && end.mass == 0.0 => load / end.damping,
+        _ => 0.0,
+    }
+}
+
 /// The phases with their steps; a step ends at every moment that bulk output asks for. Tolerances are shares of a penetration `scale`, m.
 pub fn phases(scene: &Scene, scale: f64) -> Vec<Phase> {
     let greatest = scene.greatest_force();
@@ -510,6 +542,7 @@ pub fn phases(scene: &Scene, scale: f64) -> Vec<Phase> {
         // A force that rises presses the indenter in at about this rate.
         let pressed = phase.force.map_or(0.0, |[from, to]| (to - from).abs() / greatest * scale / phase.duration);
         let pressed = if greatest > 0.0 { pressed } else { 0.0 };
+        let pressed = if phase.start == 0.0 { pressed + dropping(scene) } else { pressed };
         let jump = (after.0 - rates.0).abs() + (after.1 - rates.1).norm() + pressed;
         phase.adaptive = tolerance.map(|tolerance| Adaptive::new(phase, tolerance * scale, jump));
         rates = phase.rates(phase.end());

@@ -236,6 +236,13 @@ impl<const D: usize> Interface<D> {
         self.points.heights_at(&self.laws.surface(self.worn.as_ref()), sliding)
     }
 
+    /// The profile over the points with the indenter further along than `sliding`, m, by what it is asked with; not a number where it is
+    /// not known.
+    pub fn profile_beyond(&self, sliding: Vector2<f64>) -> impl Fn(Vector2<f64>) -> Vec<Height> + '_ {
+        let unknown = Height { height: f64::NAN, gradient: Vector2::zeros() };
+        move |further| self.heights_at(sliding + further).unwrap_or_else(|_| vec![unknown; self.points.count()])
+    }
+
     /// The vertical clearance over a point where the indenter was placed last, c, m.
     pub fn clearance(&self, i: usize, approach: f64) -> f64 {
         self.points.heights()[i].height - approach - self.points.all()[i].place[D - 1]

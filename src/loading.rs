@@ -48,6 +48,19 @@ impl Placement {
         })
     }
 
+    /// The same with the indenter further by `gone`, m, in each direction in which something holds it, after a step from `before`.
+    pub fn gone_on(mut self, before: &Self, gone: [f64; DIRECTIONS]) -> Self {
+        if self.supports[0].is_some() {
+            self.approach += gone[0];
+            self.approach_rate = (self.approach - before.approach) / self.dt;
+        }
+        for axis in (0..2).filter(|axis| self.supports[1 + axis].is_some()) {
+            self.sliding[axis] += gone[1 + axis];
+            self.sliding_rate[axis] = (self.sliding[axis] - before.sliding[axis]) / self.dt;
+        }
+        self
+    }
+
     /// Whether the indenter was told not to move in the step.
     pub fn is_still(&self) -> bool {
         self.supports == [None; DIRECTIONS] && self.sliding_rate.norm() == 0.0 && self.approach_rate == 0.0

@@ -207,3 +207,89 @@ fn a_law_of_the_distance_is_unstable_below_its_slope() {
         assert_eq!(run.code, code, "{stiffness}: {}", run.stderr);
     }
 }
+
+/// The greatest error of the approach over the greatest approach, by chosen steps, and how many there are.
+fn chosen(scene: &str, tolerance: f64, ranks: usize, exact: impl Fn(f64) -> f64) -> (f64, Outcome) {
+    let run = Run::new(scene).set(format!("phase.0.tolerance={tolerance:?}")).ranks(ranks).done();
+    let rows = run.history("time").into_iter().zip(run.history("approach")).skip(1);
+    let (mut apart, mut most) = (0.0_f64, 0.0_f64);
+    for (time, approach) in rows {
+        apart = apart.max((approach - exact(time)).abs());
+        most = most.max(exact(time).abs());
+    }
+    (apart / most, run)
+}
+
+/// Chosen steps follow a mass on a spring and a dashpot over a flat punch, m x'' + c x' + (k + 1/C_0) x = L + k V t + c V from rest, in closed
+/// form. They hold the local error of backward Euler, of second order in the step, so that the global one falls with the root of the
+/// tolerance: by 3.16 for each tenth of it. One to three ranks choose the same.
+#[test]
+fn chosen_steps_follow_a_mass() {
+    let [mass, damping, stiffness, load, speed] = [0.5, 40.0, 800.0, 0.1, 1e-3_f64];
+    let scene = format!(
+        "{FLAT}[mount]\nnormal = {{ stiffness = {stiffness:?}, damping = {damping:?}, mass = {mass:?}, load = {load:?} }}\n\
+         [[phase]]\nduration = 0.5\ntolerance = 1e-3\napproach = {:?}\n",
+        0.5 * speed
+    );
+    let total = stiffness + 1.0 / C0;
+    let rate = stiffness * speed / total;
+    let start = (load + damping * (speed - rate)) / total;
+    let decay = damping / (2.0 * mass);
+    let angular = (total / mass - decay * decay).sqrt();
+    let exact = |t: f64| {
+        let swing = (angular * t).cos() * start + (angular * t).sin() * (rate + decay * start) / angular;
+        start + rate * t - (-decay * t).exp() * swing
+    };
+    let found = [1e-3, 1e-4, 1e-5].map(|tolerance| chosen(&scene, tolerance, 1, exact));
+    let errors = found.each_ref().map(|(error, run)| (*error, run.history("time").len()));
+    println!("{errors:?}");
+    for pair in errors.windows(2) {
+        let ratio = pair[0].0 / pair[1].0;
+        assert!((2.5..4.0).contains(&ratio), "{errors:?}");
+    }
+    let (together, _) = chosen(&scene, 1e-4, 3, exact);
+    assert!((together / found[1].0 - 1.0).abs() < 1e-6, "{together} {errors:?}");
+}
+
+/// A spring with a dead load over a layer of one arm, (k + 1/C_0) x = L + k V t + mu z/C_0, z' = (x - z)/tau: the load comes at once, in a
+/// first step of 1e-10 of the time, from which there is no rate to go on with. Nothing but the memory has an error, of third order in the step
+/// where the tolerance holds the second: the error falls with the tolerance. By both strategies.
+#[test]
+fn chosen_steps_follow_a_dead_load() {
+    let [stiffness, load, speed, mu, tau] = [800.0, 0.1, 2e-4, 0.579, 0.817_f64];
+    let relaxing =
+        "poisson_ratio = 0.3\narms = [ { weight = 0.579, time = 0.817 } ]\npoisson_rule = \"constant_ratio\"";
+    let scene = FLAT.replace("poisson_ratio = 0.3", relaxing)
+        + "[mount]\nnormal = { stiffness = 800.0, load = 0.1 }\n[[phase]]\nduration = 5.0\ntolerance = 1e-3\napproach = 1e-3\n";
+    let total = stiffness + 1.0 / C0;
+    let (growth, decay) = (stiffness * speed / total / tau, (1.0 - mu / (C0 * total)) / tau);
+    let (offset, slope) = ((load / total / tau - growth / decay) / decay, growth / decay);
+    let exact = |t: f64| {
+        let arm = offset + slope * t - offset * (-decay * t).exp();
+        (load + stiffness * speed * t + mu * arm / C0) / total
+    };
+    let errors = [1e-3, 1e-4, 1e-5].map(|tolerance| chosen(&scene, tolerance, 1, exact).0);
+    println!("{errors:?}");
+    assert!((errors[0] / errors[2]).log10() > 1.6 && errors[2] < 2e-6, "{errors:?}");
+    let stiff = scene.replace("[contact]", "[contact]\npenalty = 1e10\n[solver]\nstrategy = \"monolithic\"");
+    let (error, _) = chosen(&stiff, 1e-5, 1, exact);
+    assert!(error < 2e-6, "{error}");
+}
+
+/// Chosen steps go through the onset of sliding on a spring, under a force: where it slips, 0.15 N/m, and the sliding that spring and layer leave
+/// are known at each time, so that only the step in which it begins has an error.
+#[test]
+fn chosen_steps_follow_a_slider() {
+    let law = "law = \"coulomb\"\ncoefficient = 0.3";
+    let scene = slider(law, "{ stiffness = 5.0 }", (10.0, 40), 0.005).replace("steps = 40", "tolerance = 1e-3");
+    let run = Run::new(&scene).done();
+    let k = 1.0 / (1.0 / 5.0 + 1.0 / G);
+    let (time, force, sliding) = (run.history("time"), run.history("tangential_force"), run.history("sliding"));
+    println!("{} steps", time.len());
+    for i in 2..time.len() {
+        let pulled = 0.005 * (time[i] - 1e-3);
+        let exact = (k * pulled).min(0.15);
+        assert!((force[i] - exact).abs() < 1e-9, "{} s: {} {exact}", time[i], force[i]);
+        assert!((sliding[i] - (pulled - force[i] / 5.0)).abs() < 1e-12);
+    }
+}

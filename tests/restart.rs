@@ -145,6 +145,7 @@ fn a_signal_to_one_rank_stops_all() {
         (bulk(), "", 0.0, &["--set", "wear={of=\"body\",law=\"energy\",coefficient=1e-3}"]),
         (ratio(), "", 0.0, &["--set", "wear={of=\"indenter\",law=\"archard\",coefficient=1e-3}"]),
         (bulk(), "tolerance = 1e-13\nstrategy = \"monolithic\"", 1e-10, &[]),
+        (bulk(), "tolerance = 1e-13\nstrategy = \"monolithic\"", 1e-10, &["--set", springs]),
     ] {
         let scene = scene(directory.path(), 40, &material, solver);
         let (whole, stopped) = (directory.path().join("whole.h5"), directory.path().join("stopped.h5"));
@@ -168,11 +169,20 @@ fn a_signal_to_one_rank_stops_all() {
     }
 }
 
-/// Adaptive steps: what chooses them is part of the state.
+/// Adaptive steps: what chooses them is part of the state; on one rank all unknowns at once end with the same bits, too, held by springs and a
+/// dead load.
 #[test]
 fn adaptive_steps_go_on_as_they_were() {
+    adaptive_steps_go_on("");
+    adaptive_steps_go_on(
+        "strategy = \"monolithic\"\n[mount]\nnormal = { stiffness = 1e4, load = 0.01 }\n\
+         tangential = { stiffness = 50.0, damping = 1.0, mass = 0.5 }",
+    );
+}
+
+fn adaptive_steps_go_on(solver: &str) {
     let directory = tempfile::tempdir().unwrap();
-    let scene = scene(directory.path(), 40, &bulk(), "");
+    let scene = scene(directory.path(), 40, &bulk(), solver);
     let text = std::fs::read_to_string(&scene).unwrap();
     let adaptive = text.replace("steps = 20\n", "tolerance = 1e-3\n").replace("steps = 40\n", "tolerance = 3e-4\n");
     std::fs::write(&scene, adaptive).unwrap();

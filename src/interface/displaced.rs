@@ -100,7 +100,7 @@ impl<const D: usize> Interface<D> {
     }
 
     /// The residual norm that round-off in the gap and in the slip alone can leave, N/m: eps times the slopes of the laws
-    /// times the lengths whose differences they are.
+    /// times the lengths whose differences they are. Where the indenter is held, all of it together in each of the forces on it, too.
     ///
     /// # Errors
     /// As for [`Self::residual`].
@@ -118,7 +118,10 @@ impl<const D: usize> Interface<D> {
             let slid = (moved - point.normal * normally).norm().max(approach.abs()) + sliding_rate.norm() * dt;
             (point.weight * penalty * length).powi(2) + (point.weight * slope * slid).powi(2)
         };
-        Ok(f64::EPSILON * answers.into_iter().enumerate().map(square).sum::<f64>().sqrt())
+        let squares: Vec<f64> = answers.into_iter().enumerate().map(square).collect();
+        let together = squares.iter().map(|square| square.sqrt()).sum::<f64>();
+        let held = placement.supports.iter().flatten().map(|support| together.powi(2) + support.size.powi(2));
+        Ok(f64::EPSILON * (squares.iter().sum::<f64>() + held.sum::<f64>()).sqrt())
     }
 
     /// The largest stiffness of a point, N/m per m.
@@ -133,7 +136,10 @@ impl<const D: usize> Interface<D> {
     }
 
     /// How each point has moved, and the tractions there.
-    fn answers(&mut self, placement: Placement, trial: &Trial) -> Result<Vec<(Relative<D>, Traction<D>)>> {
+    ///
+    /// # Errors
+    /// As for [`Self::residual`].
+    pub fn answers(&mut self, placement: Placement, trial: &Trial) -> Result<Vec<(Relative<D>, Traction<D>)>> {
         self.place(placement)?;
         let penalty = self.stiffness()?;
         let law = self.friction();

@@ -79,6 +79,11 @@ impl Way {
 }
 
 impl Mount {
+    /// Whether nothing slows down what its dead load does, which then comes at once.
+    pub fn drops(&self) -> bool {
+        self.load > 0.0 && self.damping == 0.0 && self.mass == 0.0
+    }
+
     /// What it does at the end of a step.
     pub fn support(&self, way: &Way) -> Support {
         let Self { stiffness, damping, mass, load } = *self;

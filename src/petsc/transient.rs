@@ -133,6 +133,8 @@ pub trait Implicit {
 pub enum Linear {
     /// By FGMRES, with the problem's own solve as preconditioner; the tangent is a matrix.
     Preconditioned,
+    /// The same, with a tangent that is a [`Matrix::shell`].
+    OwnPreconditioned,
     /// By the problem itself, exactly; the tangent is a [`Matrix::shell`].
     Own,
     /// By FGMRES, with the problem's own solve as preconditioner; the tangent is a [`Matrix::shell`]. Each system is solved to
@@ -188,7 +190,7 @@ impl Integrator {
     /// [`Error::Usage`] when PETSc does not take the value of an option.
     pub fn new(comm: &impl AsCommunicator, settings: Settings, jacobian: &mut Matrix) -> Result<Self> {
         let mut ts = null_mut();
-        let shell = matches!(settings.linear, Linear::Own | Linear::OwnIterative(_));
+        let shell = settings.linear != Linear::Preconditioned;
         let (mut snes, mut search, mut ksp, mut pc) = (null_mut(), null_mut(), null_mut(), null_mut());
         // SAFETY: places for the handles; those got from TS stay TS's own.
         unsafe {
@@ -219,7 +221,7 @@ impl Integrator {
             check(ffi::KSPGetPC(ksp, &mut pc))?;
             let (method, reduction) = match settings.linear {
                 // The preconditioner is nearly exact, so that this is one iteration, or two.
-                Linear::Preconditioned => (c"fgmres", 1e-10),
+                Linear::Preconditioned | Linear::OwnPreconditioned => (c"fgmres", 1e-10),
                 Linear::Own => (c"preonly", 1e-9),
                 Linear::OwnIterative(reduction) => (c"fgmres", reduction),
             };

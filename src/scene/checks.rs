@@ -267,24 +267,14 @@ fn heat(scene: &Scene) -> Check {
     }
 }
 
-/// A force or a mount holds the indenter by the condensed strategy, a mount in planned steps; not both of them along the approach.
+/// Not both a force and a mount hold the indenter along the approach.
 fn load(scene: &Scene) -> Check {
-    let forced = scene.phases.iter().find(|phase| phase.says_force());
-    let key = match (forced, &scene.mount) {
-        (Some(phase), _) => force_key(phase),
-        (None, Some(_)) => "mount".to_owned(),
-        (None, None) => return Ok(()),
-    };
-    if forced.is_some() && scene.mount.is_some_and(|mount| mount.normal.is_some()) {
-        return fail(&key, "cannot stand beside mount.normal, whose load is the force; leave one of them out");
+    match scene.phases.iter().find(|phase| phase.says_force()) {
+        Some(phase) if scene.mount.is_some_and(|mount| mount.normal.is_some()) => {
+            fail(&force_key(phase), "cannot stand beside mount.normal, whose load is the force; leave one of them out")
+        }
+        _ => Ok(()),
     }
-    if scene.solver.strategy == Strategy::Monolithic {
-        return fail(&key, "is not held by the strategy \"monolithic\" yet; use \"condensed\"");
-    }
-    if scene.is_adaptive() && scene.mount.is_some() {
-        return fail("mount", "is not held in adaptive steps yet; give steps in all phases");
-    }
-    Ok(())
 }
 
 /// The key by which a phase says its force.

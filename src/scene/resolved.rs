@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
-use super::{Body, Layer, Material, Phase, Record, Scene, Sides, Span, Stepping, When, checks};
+use super::{Body, Layer, Material, MountEnd, Phase, Record, Scene, Sides, Span, Stepping, When, checks};
 
 impl Scene {
     /// The resolved scene as TOML: every default written out, every duration and modulus in its own key. Reading it
@@ -76,6 +76,28 @@ impl Scene {
         self.phases.iter().flat_map(Phase::forces).map(|(_, force)| force).fold(0.0, f64::max)
     }
 
+    /// The greatest force, N/m, that a mount along the approach can press with, and the deepest place, m, that it can bring the indenter to;
+    /// none without one.
+    pub fn mounted(&self) -> Option<(f64, f64)> {
+        let MountEnd { stiffness, damping, load, .. } = self.mount?.normal?;
+        let (load, deepest) = (load.unwrap_or(0.0), self.deepest());
+        let (mut fastest, mut last): (f64, f64) = (0.0, 0.0);
+        for phase in &self.phases {
+            let mut before = 0.0;
+            for (time, approach) in phase.approaches() {
+                if time > before {
+                    fastest = fastest.max((approach - last) / (time - before));
+                }
+                (before, last) = (time, approach);
+            }
+        }
+        let place = match load {
+            0.0 => deepest,
+            load => deepest + load / stiffness,
+        };
+        Some((load + stiffness * deepest + damping * fastest, place))
+    }
+
     /// Whether a force, or a mount, holds the indenter along the approach at any time.
     pub fn is_loaded(&self) -> bool {
         self.phases.iter().any(Phase::says_force) || self.mount.is_some_and(|mount| mount.normal.is_some())
@@ -93,8 +115,9 @@ impl Scene {
             When::PhaseEnd(name) => part.phases.iter().any(|phase| phase.name == *name),
             When::Time(time) => *time <= end + near,
         });
-        // Under a force adaptive steps depend on how long it is held, too.
-        let same_steps = part.deepest() == self.deepest() && self.greatest_force() == 0.0;
+        // Under a force, and on a mount, adaptive steps depend on how long it is held, too.
+        let held = self.greatest_force() > 0.0 || self.mounted().is_some();
+        let same_steps = part.deepest() == self.deepest() && !held;
         (!part.is_adaptive() || same_steps).then_some(part)
     }
 

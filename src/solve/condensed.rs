@@ -8,20 +8,19 @@ mod linear;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
-use nalgebra::{SVector, Vector2};
+use nalgebra::SVector;
 
 use super::accepted::AcceptedFace;
 use super::response::{Response, unprepared};
 use super::traction::{self, Answer, Behind, Held, Laws, Outcome, Site};
 use super::{BulkFields, Contact, TransientProblem, Work};
 use crate::energy::Energy;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::friction::Law;
 use crate::interface::{Interface, State};
 use crate::loading::{DIRECTIONS, Mount, Phase, Placement, Support};
 use crate::parallel::share_numbers;
 use crate::petsc::{Gather, Matrix, Step, Vector, Verdict};
-use crate::profile::Height;
 use crate::snapshot::Snapshot;
 use linear::Linear;
 
@@ -249,9 +248,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
     /// Calls with the laws of a step.
     fn with_laws<T>(&self, stage: &Stage<D>, call: impl FnOnce(Laws<'_>) -> T) -> T {
         let interface = &self.face.interface;
-        let sliding = stage.placement.sliding;
-        let unknown = |_| vec![Height { height: f64::NAN, gradient: Vector2::zeros() }; stage.sites.len()];
-        let profile = |further: Vector2<f64>| interface.heights_at(sliding + further).unwrap_or_else(unknown);
+        let profile = interface.profile_beyond(stage.placement.sliding);
         call(Laws {
             penalty: interface.penalty(),
             friction: interface.friction(),
@@ -288,33 +285,13 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         Ok(self.with_laws(stage, |laws| Outcome::new(sites, tractions, (motions, shift), laws)))
     }
 
-    /// Where the indenter is at the end of a step, on every rank. Collective.
-    fn placed(&self, stage: &Stage<D>, shift: SVector<f64, D>) -> Result<Placement> {
-        let mut placement = stage.placement;
-        let before = self.face.interface.placement();
+    /// How far the indenter has gone on in each direction, m, on every rank. Collective.
+    fn gone(&self, stage: &Stage<D>, shift: SVector<f64, D>) -> [f64; DIRECTIONS] {
         let mut gone: [f64; DIRECTIONS] = std::array::from_fn(|direction| shift.dot(&traction::axis(direction)));
-        if placement.supports.iter().all(Option::is_none) {
-            return Ok(placement);
+        if stage.placement.supports.iter().any(Option::is_some) {
+            self.comm.process_at_rank(0).broadcast_into(&mut gone[..]);
         }
-        self.comm.process_at_rank(0).broadcast_into(&mut gone[..]);
-        if let Some(support) = placement.supports[0] {
-            placement.approach += gone[0];
-            placement.approach_rate = (placement.approach - before.approach) / stage.step.dt;
-            let (approach, height) = (placement.approach, self.freedom.height);
-            if approach >= height {
-                let force = support.force - support.stiffness * gone[0];
-                return Err(Error::Solver(format!(
-                    "the force of {force:.6e} N/m presses the indenter by {approach:.3e} m into a body of {height:.3e} m at \
-                     t = {:.6e} s, which no contact carries; give a smaller force or a stiffer body",
-                    stage.step.t
-                )));
-            }
-        }
-        for axis in (0..2).filter(|axis| placement.supports[1 + axis].is_some()) {
-            placement.sliding[axis] += gone[1 + axis];
-            placement.sliding_rate[axis] = (placement.sliding[axis] - before.sliding[axis]) / stage.step.dt;
-        }
-        Ok(placement)
+        gone
     }
 
     /// Gives every rank the states and displacements of rank 0. Collective.
@@ -482,7 +459,10 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
         let mut ends = self.displaced(&tractions::<D>(u)?)?.0;
         ends.resize(self.face.displacement().len(), 0.0);
         self.comm.process_at_rank(0).broadcast_into(&mut ends[..]);
-        Ok(self.face.departure(step, &ends))
+        let stage = self.stage.as_ref().ok_or_else(unprepared)?;
+        let gone = self.gone(stage, stage.trial.shift);
+        let placed = stage.placement.gone_on(&self.face.interface.placement(), gone);
+        Ok(self.face.departure(step, &ends, placed))
     }
 
     fn approach_under(&mut self, force: f64, duration: f64) -> Result<f64> {
@@ -498,7 +478,8 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
         let outcome = self.outcome(u)?;
         let stage = self.stage.take().ok_or_else(unprepared)?;
         self.jumps = false;
-        let placement = self.placed(&stage, outcome.shift)?;
+        let gone = (self.gone(&stage, outcome.shift), self.freedom.height);
+        let placement = self.face.placed(step.t, stage.placement, gone)?;
         let (met, states) = self.ends(&stage, &outcome);
         let (displacement, forces) = self.displaced(&met)?;
         self.scale = outcome.size(&stage.sites);

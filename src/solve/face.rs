@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::accepted::AcceptedFace;
+use crate::element::mpjr::{Relative, Traction};
 use crate::error::Result;
 use crate::interface::{Interface, Residual, Tangent, Trial};
 use crate::loading::{DIRECTIONS, Placement};
@@ -20,6 +21,8 @@ pub struct ContactFace<const D: usize> {
     free: Vec<SVector<f64, D>>,
     trial: Trial,
     placement: Placement,
+    /// How far an indenter that is held is beyond where it was thought to be, in each direction, m.
+    pub gone: [f64; DIRECTIONS],
     /// Contact forces at the trial state, internal minus external, N/m; zero where a component is held.
     pub residual: Residual<D>,
     /// Their derivatives at the trial state; zero where a component is held.
@@ -32,14 +35,15 @@ pub struct ContactFace<const D: usize> {
 impl<const D: usize> ContactFace<D> {
     /// At rest. `gather` brings the components of each face node out of a solution vector, where they are in the local `rows`; `held`
     /// says which of them are held.
-    pub fn new(interface: Interface<D>, gather: Gather, rows: Vec<Option<usize>>, held: &[[bool; D]]) -> Self {
+    pub fn new(accepted: AcceptedFace<D>, gather: Gather, rows: Vec<Option<usize>>, held: &[[bool; D]]) -> Self {
         Self {
-            accepted: AcceptedFace::new(interface, [None; DIRECTIONS]),
+            accepted,
             gather,
             rows,
             free: held.iter().map(|held| SVector::from(held.map(|held| f64::from(!held)))).collect(),
             trial: Trial::at_rest(D * held.len()),
             placement: Placement::default(),
+            gone: [0.0; DIRECTIONS],
             residual: Residual::new(),
             tangent: Tangent::default(),
             scale: 0.0,
@@ -50,6 +54,26 @@ impl<const D: usize> ContactFace<D> {
     /// The laws on the face.
     pub fn interface(&self) -> &Interface<D> {
         &self.accepted.interface
+    }
+
+    /// Where the indenter is at the trial state.
+    pub fn at(&self) -> Placement {
+        self.placement
+    }
+
+    /// How each point has moved at the trial state, and the tractions there.
+    pub fn answers(&mut self) -> Result<Vec<(Relative<D>, Traction<D>)>> {
+        self.accepted.interface.answers(self.placement, &self.trial)
+    }
+
+    /// What each point gives its nodes, of them what is free; 0 elsewhere.
+    pub fn at_free_nodes(&self, points: impl Iterator<Item = SVector<f64, D>>) -> Vec<SVector<f64, D>> {
+        let mut nodes = vec![SVector::zeros(); self.free.len()];
+        for (i, force) in points.enumerate() {
+            self.interface().points().shares(i).iter().for_each(|&(node, share)| nodes[node] += force * share);
+        }
+        nodes.iter_mut().zip(&self.free).for_each(|(node, free)| node.component_mul_assign(free));
+        nodes
     }
 
     /// Makes `residual` hold at a trial state.
@@ -141,8 +165,8 @@ impl<const D: usize> ContactFace<D> {
     }
 
     /// Brings the face's displacements and the indenter's place to a trial state.
-    fn try_state(&mut self, step: Step, u: &Vector) -> Result<()> {
-        self.placement = self.placement(step)?;
+    pub fn try_state(&mut self, step: Step, u: &Vector) -> Result<()> {
+        self.placement = self.placed(step)?;
         self.trial.beginning.copy_from_slice(self.accepted.displacement());
         self.gather.gather(u, &mut self.trial.end)?;
         // What is held stays, whatever round-off the linear solver leaves there.
@@ -151,7 +175,12 @@ impl<const D: usize> ContactFace<D> {
         Ok(())
     }
 
-    /// Where the indenter is at the end of a step, and what slip rates friction can tell apart in it.
+    /// The same with the indenter as far on as it has gone.
+    pub fn placed(&self, step: Step) -> Result<Placement> {
+        Ok(self.placement(step)?.gone_on(&self.interface().placement(), self.gone))
+    }
+
+    /// Where the indenter is at the end of a step if it goes on as it did, and what slip rates friction can tell apart in it.
     pub fn placement(&self, step: Step) -> Result<Placement> {
         // Slip is a difference of displacements, of which round-off leaves 16 digits; the law is let have six of them.
         const LAST_DIGITS: f64 = 1e-10;

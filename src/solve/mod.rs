@@ -24,7 +24,7 @@ pub use body::{Body, Moduli, Region, Solid};
 pub use condensed::{Condensed, Freedom, LARGE_FACE, LARGE_PERIODIC_FACE, Way};
 pub use driver::{Counts, Driver, MAX_NEWTON, Position};
 pub use heat::{Convection, Heat, Heated, Medium, Thermal};
-pub use monolithic::Monolithic;
+pub use monolithic::{Bordered, Monolithic};
 pub use response::{
     Compliance, Following, Inside, Interior, Layered, Moving, PeriodicColumn, Relaxation, Relaxations, Remembering,
     Response, Sparse, Transform, Travelling,

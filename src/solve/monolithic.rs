@@ -1,20 +1,27 @@
 //! All unknowns at once: the reference strategy, which works for everything.
 
+mod bordered;
+mod borders;
+mod start;
+
 use nalgebra::{SMatrix, SVector};
 
+use super::accepted::AcceptedFace;
 use super::body::{Body, rows_of};
 use super::condensed::LARGE_FACE;
 use super::face::ContactFace;
-use super::traction::{self, Behind, Held, Laws, Outcome};
+use super::traction::{self, Behind};
 use super::woodbury::Woodbury;
 use super::{BulkFields, Contact, TransientProblem, Work};
 use crate::bulk::Bulk;
 use crate::energy::Energy;
 use crate::error::Result;
 use crate::interface::Interface;
-use crate::loading::Phase;
+use crate::loading::{DIRECTIONS, Mount, Phase, Placement};
 use crate::petsc::{Gather, Matrix, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
+
+pub use bordered::Bordered;
 
 /// Bulk and interface in one sparse system: the residual is the force on every node.
 pub struct Monolithic<const D: usize> {
@@ -59,7 +66,13 @@ struct Base<const D: usize> {
 
 impl<const D: usize> Monolithic<D> {
     /// At rest. `tolerance` is relative to the contact forces, on the residual norm.
-    pub fn new(bulk: Bulk, body: Body<D>, interface: Interface<D>, layout: &Vector, tolerance: f64) -> Result<Self> {
+    pub fn new(
+        bulk: Bulk,
+        body: Body<D>,
+        (interface, mounts): (Interface<D>, [Option<Mount>; DIRECTIONS]),
+        layout: &Vector,
+        tolerance: f64,
+    ) -> Result<Self> {
         let (mesh, numbering) = (body.mesh(), body.numbering());
         let unknowns = &interface.face().unknown;
         let row = |&unknown: &u32| (numbering.global[unknown as usize], numbering.local(unknown).map(|node| D * node));
@@ -71,8 +84,9 @@ impl<const D: usize> Monolithic<D> {
             .iter()
             .flat_map(|&(node, local)| (0..D).map(move |i| (D as i32 * node + i as i32, local.map(|row| row + i))));
         let inverse = Woodbury::new(body.comm(), components.collect(), held.as_flattened().to_vec(), layout)?;
+        let accepted = AcceptedFace::new(interface, mounts);
         Ok(Self {
-            face: ContactFace::new(interface, gather, rows.iter().map(|&(_, local)| local).collect(), &held),
+            face: ContactFace::new(accepted, gather, rows.iter().map(|&(_, local)| local).collect(), &held),
             bulk,
             body,
             rows,
@@ -91,102 +105,6 @@ impl<const D: usize> Monolithic<D> {
     /// made for the linear systems anyway.
     pub fn starts_from_the_laws(&mut self) {
         self.starts = true;
-    }
-
-    /// Whether the laws are too stiff for Newton's method on displacements from where the face was: the penalty beside the body,
-    /// or the way of the indenter in a step beside the slip over which friction turns.
-    fn is_stiff(&mut self, step: Step) -> Result<bool> {
-        const PENALTY: f64 = 1e2;
-        const TURNS: f64 = 5.0;
-        let placement = self.face.placement(step)?;
-        let way = placement.sliding_rate.norm().max(placement.approach_rate.abs()) * step.dt;
-        if self.face.interface().friction().is_some_and(|law| way > TURNS * law.sharpness(step.dt)) {
-            return Ok(true);
-        }
-        self.round_off.prepare(&mut self.bulk, step.dt)?;
-        let stiffness = self.face.gather(&self.round_off.stiffness)?;
-        // At a node with its neighbours held, which is stiffer than the body.
-        let softness = 1.0 / stiffness.into_iter().fold(f64::INFINITY, f64::min);
-        Ok(self.face.interface().stiffest() * softness > PENALTY)
-    }
-
-    /// Makes `u`, the accepted state, a start at which the tractions meet the laws.
-    fn start(&mut self, step: Step, u: &mut Vector) -> Result<()> {
-        let (mut load, mut change, mut accepted) = (u.like()?, u.like()?, u.like()?);
-        accepted.copy_from(u)?;
-        self.bulk.force(step, u, &change, &mut load)?;
-        self.inverse.compliance(&self.bulk, step.dt, self.face.interface().face())?;
-        self.inverse.solve_bulk(&load, &mut change)?;
-        u.add(-1.0, &change)?;
-        let free = self.face.gather(u)?;
-        let Some((forces, displacements)) = self.settle(step, free)? else { return Ok(()) };
-        load.set(0.0)?;
-        self.on_face(&forces, &mut load)?;
-        self.inverse.solve_bulk(&load, &mut change)?;
-        u.add(1.0, &change)?;
-        // What round-off in the factor left.
-        let (mut rate, mut force) = (u.like()?, u.like()?);
-        rate.copy_from(u)?;
-        rate.combine(-1.0 / step.dt, &accepted, 1.0 / step.dt)?;
-        self.bulk.force(step, u, &rate, &mut force)?;
-        load.add(-1.0, &force)?;
-        self.inverse.solve_bulk(&load, &mut change)?;
-        u.add(1.0, &change)?;
-        self.started = true;
-        self.on_face(&displacements, u)
-    }
-
-    /// The forces on the nodes of the face and their displacements where the laws hold, on every rank. Collective.
-    fn settle(&mut self, step: Step, free: Vec<f64>) -> Result<Option<(Vec<f64>, Vec<f64>)>> {
-        let placement = self.face.placement(step)?;
-        self.face.accepted.interface.place(placement)?;
-        let interface = self.face.interface();
-        let Some((compliance, secant)) = self.inverse.compliance(&self.bulk, step.dt, interface.face())? else {
-            return Ok(None);
-        };
-        let behind = Behind { interface, compliance, secant };
-        let sites = behind.sites(&self.face.accepted, placement, &free);
-        let resolution = placement.resolution * step.dt;
-        let laws = Laws {
-            penalty: interface.penalty(),
-            friction: interface.friction(),
-            wear: None,
-            dt: step.dt,
-            resolution,
-            held: Held::default(),
-        };
-        let normals = interface.points().all().iter().map(|point| point.normal);
-        let tractions: Vec<SVector<f64, D>> =
-            interface.states().iter().zip(normals).map(|(state, normal)| state.on_layer(&normal)).collect();
-        let at_rest = behind.at_points(&free);
-        let moved = |t: &[SVector<f64, D>]| -> Result<Vec<SVector<f64, D>>> {
-            Ok(behind.moves(t)?.iter().zip(&at_rest).map(|(moved, free)| moved + free).collect())
-        };
-        let first = Outcome::new(&sites, tractions.clone(), (moved(&tractions)?, SVector::zeros()), laws);
-        let operator: traction::Operator<'_, D> = (&|j, rows| behind.influence(j, rows), &|t| behind.moves(t));
-        // To the last digits: what displacements make of the tractions is more than they are off.
-        let outcome = traction::start(&sites, first, laws, operator, f64::EPSILON)?;
-        let (mut displacements, forces) = behind.displaced(&outcome.met(&sites), &free)?;
-        if let Some(penalty) = interface.penalty() {
-            for (i, (site, answer)) in sites.iter().zip(&outcome.answers).enumerate().filter(|(_, (_, a))| a.active) {
-                if let [(node, _)] = interface.points().shares(i) {
-                    let motion = answer.motion(site, penalty);
-                    displacements[D * node..][..D].copy_from_slice(motion.as_slice());
-                }
-            }
-        }
-        Ok(Some((forces, displacements)))
-    }
-
-    /// Sets the face's nodes in a vector of the body.
-    fn on_face(&self, from: &[f64], to: &mut Vector) -> Result<()> {
-        let mut values = to.view_mut()?;
-        for (node, &(_, local)) in from.chunks_exact(D).zip(&self.rows) {
-            if let Some(row) = local {
-                values[row..][..D].copy_from_slice(node);
-            }
-        }
-        Ok(())
     }
 }
 
@@ -254,8 +172,9 @@ impl<const D: usize> TransientProblem for Monolithic<D> {
 
     fn guess(&mut self, step: Step, u: &mut Vector) -> Result<()> {
         self.started = false;
+        self.face.gone = [0.0; DIRECTIONS];
         let small = D * self.rows.len() <= LARGE_FACE;
-        if self.starts && small && self.is_stiff(step)? {
+        if self.starts && small && (self.is_stiff(step)? || self.falls(step, u)?) {
             return self.start(step, u);
         }
         // The face goes on as it did; what is behind it need not be predicted, because it is linear.
@@ -274,7 +193,15 @@ impl<const D: usize> TransientProblem for Monolithic<D> {
 
     fn departure(&mut self, step: Step, u: &Vector) -> Result<f64> {
         let ends = self.face.gather(u)?;
-        Ok(self.face.accepted.departure(step, &ends))
+        Ok(self.face.accepted.departure(step, &ends, self.face.placed(step)?))
+    }
+
+    fn approach_under(&mut self, force: f64, duration: f64) -> Result<f64> {
+        self.face.accepted.interface.place(Placement::default())?;
+        let interface = self.face.interface();
+        let known = self.inverse.compliance(&self.bulk, duration, interface.face())?;
+        let behind = known.map(|(compliance, secant)| Behind { interface, compliance, secant });
+        behind.map_or(Ok(0.0), |behind| traction::approach_under(&behind, force))
     }
 
     fn commit(&mut self, step: Step, u: &mut Vector) -> Result<()> {

@@ -1,6 +1,7 @@
 //! Shared by the integration tests; each uses a part of it.
 #![allow(dead_code)]
 pub mod bad;
+pub mod loads;
 pub mod mpi;
 pub mod msh;
 pub mod program;

@@ -74,7 +74,11 @@ pub fn modulus<const D: usize>(sites: &[Site<D>]) -> f64 {
 
 /// How a point moves against an indenter that moves by `shift`, but for what the profile makes of it.
 pub fn against<const D: usize>(site: &Site<D>, shift: &SVector<f64, D>) -> SVector<f64, D> {
-    let normal = site.normal;
+    passed(&site.normal, shift)
+}
+
+/// The same of a point with a normal.
+fn passed<const D: usize>(normal: &SVector<f64, D>, shift: &SVector<f64, D>) -> SVector<f64, D> {
     let tangential = shift - normal * normal.dot(shift);
     -tangential - normal * (normal.dot(&up()) * shift.dot(&up()))
 }
@@ -111,7 +115,7 @@ impl Held<'_> {
         let mut unbalance = [0.0; DIRECTIONS];
         for (direction, Support { force, stiffness, .. }) in self.directions() {
             let way = axis::<D>(direction);
-            let met: f64 = force_along(sites, tractions, |i| column(&sites[i], &way, over[i].slope));
+            let met: f64 = force_along(sites, tractions, |i| column(&sites[i].normal, &way, over[i].slope));
             unbalance[direction] = met - (force - stiffness * shift.dot(&way));
         }
         unbalance
@@ -124,9 +128,18 @@ impl Held<'_> {
     }
 }
 
-/// a of a point.
-fn column<const D: usize>(site: &Site<D>, axis: &SVector<f64, D>, slope: Vector2<f64>) -> SVector<f64, D> {
-    against(site, axis) + site.normal * (site.normal.dot(&up()) * slope.dot(&in_plane(axis)))
+/// a of a point with a normal, under a slope of the profile.
+pub fn column<const D: usize>(
+    normal: &SVector<f64, D>,
+    axis: &SVector<f64, D>,
+    slope: Vector2<f64>,
+) -> SVector<f64, D> {
+    passed(normal, axis) + normal * (normal.dot(&up()) * slope.dot(&in_plane(axis)))
+}
+
+/// How far the indenter goes on in each direction where `small` is k - l b and `rest` is R - l a'; none where nothing bears it.
+pub fn places(small: Matrix3<f64>, rest: Vector3<f64>) -> Option<[f64; DIRECTIONS]> {
+    small.try_inverse().map(|inverse| (inverse * rest).into())
 }
 
 /// x and y of a vector.
@@ -173,7 +186,7 @@ impl<const D: usize> Border<D> {
         let mut stiffness = Matrix3::identity();
         for (direction, support) in held.directions() {
             let way = axis::<D>(direction);
-            let column = |(site, over): (&Site<D>, &Over)| column(site, &way, over.slope);
+            let column = |(site, over): (&Site<D>, &Over)| column(&site.normal, &way, over.slope);
             columns[direction] = sites.iter().zip(&at.over).map(column).collect();
             let moved: Vec<_> = columns[direction].iter().map(|a| a / modulus).collect();
             products[direction] = product(points, &still, &moved);
@@ -215,11 +228,11 @@ impl<const D: usize> Border<D> {
         let b = self.answers(inverse)?;
         let small = self.stiffness - Matrix3::from_fn(|i, j| self.row(sites, i, &b[j]));
         let rest = Vector3::from_fn(|i, _| unbalance[i] - self.row(sites, i, &a));
-        let Some(gone) = small.try_inverse().map(|inverse| inverse * rest) else { return Ok(None) };
-        for (b, gone) in b.iter().zip(&gone) {
-            a.iter_mut().zip(b).for_each(|(a, b)| *a -= b * *gone);
+        let Some(gone) = places(small, rest) else { return Ok(None) };
+        for (b, gone) in b.iter().zip(gone) {
+            a.iter_mut().zip(b).for_each(|(a, b)| *a -= b * gone);
         }
-        Ok(Some((a, gone.into())))
+        Ok(Some((a, gone)))
     }
 
     /// b, which is had once for all right sides: GMRES asks for several.
@@ -260,10 +273,29 @@ pub fn shift<const D: usize>(ways: [f64; DIRECTIONS]) -> SVector<f64, D> {
 /// to where it is.
 pub fn touch<const D: usize>(sites: &[Site<D>], motions: &[SVector<f64, D>], force: f64) -> f64 {
     let gap = |(site, motion): (&Site<D>, &SVector<f64, D>)| {
-        let upward = site.normal.dot(&up::<D>());
-        let push = force / (site.weight * site.moduli.normal);
-        (-site.relative(motion).overlap / upward, push)
+        (site.relative(motion).overlap, site.normal, 1.0 / (site.weight * site.moduli.normal))
     };
-    let first = sites.iter().zip(motions).map(gap).min_by(|a, b| a.0.total_cmp(&b.0));
-    first.map_or(0.0, |(gap, push)| gap + push)
+    down_to(sites.iter().zip(motions).map(gap), force)
+}
+
+/// The same by the overlap, m, of each point, its normal and its softness, m per N/m.
+pub fn down_to<const D: usize>(points: impl Iterator<Item = (f64, SVector<f64, D>, f64)>, force: f64) -> f64 {
+    let gap = |(overlap, normal, softness): (f64, SVector<f64, D>, f64)| (-overlap / normal.dot(&up()), softness);
+    let first = points.map(gap).min_by(|a, b| a.0.total_cmp(&b.0));
+    first.map_or(0.0, |(gap, softness)| gap + force * softness)
+}
+
+/// How the forces along the face change with the slopes of the profile as the indenter goes on in a direction, N/m per m, from a
+/// `shift`; of points over an `area` that press on it with so much vertically each, N/m.
+pub fn steepening<const D: usize>(
+    held: Held<'_>,
+    (shift, direction): (&SVector<f64, D>, usize),
+    (pressing, area): (&[f64], f64),
+) -> Vector2<f64> {
+    /// Over the distance of two points.
+    const BESIDE: f64 = 1e-4;
+    let beside = BESIDE * (area / pressing.len().max(1) as f64).powf(1.0 / (D - 1) as f64);
+    let over = |sign: f64| held.over(&(shift + axis::<D>(direction) * (sign * beside)), pressing.len());
+    let slopes = over(1.0).into_iter().zip(over(-1.0)).map(|(on, back)| (on.slope - back.slope) / (2.0 * beside));
+    pressing.iter().zip(slopes).map(|(force, steeper)| steeper * *force).sum()
 }

@@ -40,7 +40,9 @@ pub use continuation::start;
 pub use dense::Factor;
 pub use fold::jumped;
 pub use fourier::Fourier;
-pub use held::{Border, Held, Over, against, axis, in_plane, modulus, shift, touch, up};
+pub use held::{
+    Border, Held, Over, against, axis, column, down_to, in_plane, modulus, places, shift, steepening, touch, up,
+};
 pub use linear::{Linearised, product};
 pub use pressed::approach_under;
 pub use search::{Operator, Outcome, area, length, settle};

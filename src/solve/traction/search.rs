@@ -3,7 +3,7 @@
 use nalgebra::{SVector, Vector2};
 
 use super::dense::{Factor, Influence};
-use super::held::{Border, Held, Over, against, axis, up};
+use super::held::{Border, Held, Over, against, steepening, up};
 use super::linear::Linearised;
 use super::{Answer, Laws, Site};
 use crate::error::Result;
@@ -65,6 +65,11 @@ impl<const D: usize> Outcome<D> {
         sites.iter().zip(&self.over).zip(&self.motions).map(lowered).collect()
     }
 
+    /// What of the motion of a point is the indenter's going on, m.
+    pub fn against(&self, site: &Site<D>, i: usize) -> SVector<f64, D> {
+        against(site, &self.shift) - site.normal * (site.normal.dot(&up()) * self.over[i].rise)
+    }
+
     /// The same under other laws.
     pub fn under(self, sites: &[Site<D>], laws: Laws<'_>) -> Self {
         let motions = self.under_placed(sites);
@@ -87,15 +92,11 @@ impl<const D: usize> Outcome<D> {
 
     /// How the forces along the face change with the slopes of the profile as the indenter goes on in a direction, N/m per m.
     pub fn steepening(&self, sites: &[Site<D>], held: Held<'_>, direction: usize) -> Vector2<f64> {
-        /// Over the distance of two points.
-        const BESIDE: f64 = 1e-4;
-        let beside = BESIDE * (area(sites) / sites.len().max(1) as f64).powf(1.0 / (D - 1) as f64);
-        let over = |sign: f64| held.over(&(self.shift + axis::<D>(direction) * (sign * beside)), sites.len());
-        let slopes = over(1.0).into_iter().zip(over(-1.0)).map(|(on, back)| (on.slope - back.slope) / (2.0 * beside));
-        let force = |((site, traction), steeper): ((&Site<D>, &SVector<f64, D>), Vector2<f64>)| {
-            steeper * (-site.weight * site.normal.dot(traction) * site.normal.dot(&up()))
+        let pressing = |(site, traction): (&Site<D>, &SVector<f64, D>)| {
+            -site.weight * site.normal.dot(traction) * site.normal.dot(&up())
         };
-        sites.iter().zip(&self.tractions).zip(slopes).map(force).sum()
+        let pressing: Vec<f64> = sites.iter().zip(&self.tractions).map(pressing).collect();
+        steepening(held, (&self.shift, direction), (&pressing, area(sites)))
     }
 
     /// Of no points.
