@@ -5,6 +5,11 @@ pub fn checksum(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |sum, &byte| (sum ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
 }
 
+/// The same as 16 hexadecimal digits.
+pub fn text(bytes: &[u8]) -> String {
+    format!("{:016x}", checksum(bytes))
+}
+
 /// A sum over the 8-byte words of a row of numbers that does not depend on the order in which its pieces are added
 /// (wrapping): `place` tells rows apart, `first` is where in the row the piece begins. Every word is mixed with its place
 /// as splitmix64 does (Steele, Lea and Flood, OOPSLA 2014), so that none can change or move unnoticed.

@@ -171,6 +171,35 @@ fn a_changed_file_is_noticed() {
     assert!(told.contains("phase.0.motion.approach.0: 0.001 there, 0.0011 here"), "{told}");
 }
 
+/// The results have the checksums of what was read: of a motion, and of a table of friction. A file that says the same in other bytes is
+/// another one, to a run that is to go on and to a sweep.
+#[test]
+fn the_bytes_of_a_file_are_among_the_inputs() {
+    let scene = LAYER.replace("coefficient = 0.2", "coefficient = 'table(\"f.csv\", v)'")
+        + "[[phase]]\nname = \"first press\"\nsteps = 4\nmotion = \"press.csv\"\n";
+    let [motion, table] = ["time, approach\n1, 1e-3\n", "v, f\n0, 0.2\n1, 0.3\n"].map(str::to_owned);
+    let run = with_files(&scene, &[("press.csv", motion.clone()), ("f.csv", table.clone())]);
+    let directory = run.directory();
+    fs::write(directory.join("sweep.toml"), "scene = \"scene.toml\"\n[vary]\n\"solver.tolerance\" = [1e-9]\n").unwrap();
+    let swept = || output_of(program(1).current_dir(&directory).args(["sweep", "sweep.toml"]));
+    swept();
+    let outcome = run.done();
+    let sum = |text: &str| mpjr::checksum::text(text.as_bytes());
+    let inputs = format!("friction.coefficient {}\nphase.first press.motion {}\n", sum(&table), sum(&motion));
+    assert_eq!(outcome.results().text("inputs").unwrap(), inputs);
+    for (file, content, key) in
+        [("press.csv", &motion, "phase.first press.motion"), ("f.csv", &table, "friction.coefficient")]
+    {
+        assert!(swept().contains("1 of 1 case(s) were complete before"));
+        fs::write(directory.join(file), content.replace(", ", ",")).unwrap();
+        let told = ends_with(program(1).current_dir(&directory).args(["run", "scene.toml", "--resume"]), 2);
+        assert!(told.contains(&format!("the file that {key} names is not what it was")), "{told}");
+        assert!(!swept().contains("were complete before"), "{file} is another");
+        fs::write(directory.join(file), content).unwrap();
+        swept();
+    }
+}
+
 /// Several ranks read it as one does.
 #[test]
 fn ranks_agree() {

@@ -287,6 +287,7 @@ impl Random {
             coefficient: self.of(&[Coefficient::Number(coefficient), formula]),
             shear_limit: self.of(&[None, Some(radius)]),
             tables: [("é.csv".to_owned(), vec![[0.0, small], [wavelength, coefficient]])].into(),
+            checksums: Vec::new(),
         };
         let penalty = if exact { self.of(&[None, penalty]) } else { penalty };
         let ends = phases.iter().take(2).map(|phase| When::PhaseEnd(phase.name.clone()));

@@ -193,8 +193,9 @@ fn refuse_another_scene(file: &Path, stored: &str, scene: &Scene) -> Result<()> 
 /// Both are as [`composition::inputs`] gives them.
 fn refuse_other_inputs(file: &Path, there: &str, here: &str) -> Result<()> {
     let Some(other) = here.lines().find(|line| there.lines().all(|known| known != *line)) else { return Ok(()) };
-    let key = other.split(' ').next().unwrap_or_default();
-    let reason = match there.lines().any(|known| known.split(' ').next() == Some(key)) {
+    let key_of = |line: &'_ str| line.rsplit_once(' ').map_or(String::new(), |(key, _)| key.to_owned());
+    let key = key_of(other);
+    let reason = match there.lines().any(|known| key_of(known) == key) {
         true => format!("the file that {key} names is not what it was when the run began; put that back"),
         false => {
             format!("another version of mpjr wrote it, and it does not tell the content of the file that {key} names")

@@ -23,6 +23,9 @@ pub struct Friction {
     /// The files that the coefficient names, as points (x, y).
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub tables: BTreeMap<String, Vec<[f64; 2]>>,
+    /// The checksums of their bytes, of those that were read for this scene, which then depends on them.
+    #[serde(skip)]
+    pub checksums: Vec<String>,
 }
 
 /// How friction turns from stick to slip.
@@ -56,7 +59,13 @@ pub enum Coefficient {
 impl Friction {
     /// With a coefficient that is a number, and no limit.
     pub fn constant(law: Law, coefficient: f64) -> Self {
-        Self { law, coefficient: Coefficient::Number(coefficient), shear_limit: None, tables: BTreeMap::new() }
+        Self {
+            law,
+            coefficient: Coefficient::Number(coefficient),
+            shear_limit: None,
+            tables: BTreeMap::new(),
+            checksums: Vec::new(),
+        }
     }
 
     /// The coefficient, where it is a number and says all.

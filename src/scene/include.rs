@@ -10,6 +10,7 @@ use super::friction::tables_in;
 use super::keys::tables::MATERIAL_FILE;
 use super::keys::{self, Section};
 use super::read::{material, phase, record};
+use crate::checksum;
 use crate::error::{Error, Result};
 use crate::input;
 use crate::table::{self as numbers, Fault};
@@ -30,20 +31,24 @@ pub fn include(table: &mut Table, file: &Path, load: Load) -> Result<()> {
 /// The tables that the coefficient of friction names and that are not there yet: their first two columns.
 fn tables(friction: &mut Table, scene: &Path, load: Load) -> Result<()> {
     const KEY: &str = "friction.coefficient";
-    let Some(formula) = friction.get("coefficient").and_then(Value::as_str) else { return Ok(()) };
-    for name in tables_in(formula) {
-        let Value::Table(tables) = friction.entry("tables").or_insert_with(|| Value::Table(Table::new())) else {
+    let Some(formula) = friction.get("coefficient").and_then(Value::as_str).map(str::to_owned) else { return Ok(()) };
+    for name in tables_in(&formula) {
+        match friction.get("tables") {
+            Some(Value::Table(tables)) if tables.contains_key(&name) => continue,
             // What it is instead is said where it is read.
-            return Ok(());
-        };
-        if tables.contains_key(&name) {
-            continue;
+            Some(Value::Table(_)) | None => {}
+            Some(_) => return Ok(()),
         }
         let text = load_beside(&name, (scene, KEY), load)?;
         let wrong = |fault: Fault| Error::scene(scene, KEY, format!("{name}: {fault}"));
         let columns = numbers::Table::read(text.as_bytes()).and_then(|table| table.columns(&[0, 1])).map_err(wrong)?;
         let points = columns.rows.into_iter().map(|row| row.values.into()).collect();
-        tables.insert(name, Value::Array(points));
+        if let Value::Table(tables) = friction.entry("tables").or_insert_with(|| Value::Table(Table::new())) {
+            tables.insert(name, Value::Array(points));
+        }
+        if let Value::Array(sums) = friction.entry("checksums").or_insert_with(|| Value::Array(Vec::new())) {
+            sums.push(Value::String(checksum::text(text.as_bytes())));
+        }
     }
     Ok(())
 }

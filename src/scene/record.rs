@@ -10,6 +10,9 @@ use super::{Motion, Phase};
 pub struct Record {
     /// As typed.
     pub file: String,
+    /// The checksum of its bytes, where it was read for this scene, which then depends on it.
+    #[serde(skip)]
+    pub checksum: Option<String>,
     /// s since the phase began, at least 0, ascending; the last is above 0.
     pub time: Vec<f64>,
     /// The normal approach of the indenter, m.

@@ -155,6 +155,7 @@ fn full_slip(n: usize, coefficient: &str, shear_limit: Option<f64>, law: fn(f64)
             coefficient: Coefficient::Formula(coefficient.to_owned()),
             shear_limit,
             tables: BTreeMap::new(),
+            checksums: Vec::new(),
         }),
         ..Setting::new(n, elastic(568.498, 0.4999), vec![Phase::load(1.0, 2, force), slide])
     };

@@ -322,15 +322,16 @@ static FRICTION: Keys = Keys {
         number("shear_limit", Quantity::positive("a positive shear traction in Pa"))
             .about("which the shear does not exceed"),
         Key::new("tables", Kind::Curves("an array of points [x, y]")).about("that the formula names, instead of files"),
+        Key::new("checksums", Kind::Texts("an array of texts")).about("of the files, put there where they are read"),
         number("regularisation", Quantity::positive("a positive slip rate in m/s")).required(),
         number("elastic_slip", Quantity::positive("a positive length in m")).required(),
     ],
     decides: Some(Decision {
         by: "law",
         of: &[
-            ("coulomb", &["coefficient", "shear_limit", "tables"]),
-            ("coulomb_tanh", &["coefficient", "shear_limit", "tables", "regularisation"]),
-            ("coulomb_elastic_slip", &["coefficient", "shear_limit", "tables", "elastic_slip"]),
+            ("coulomb", &["coefficient", "shear_limit", "tables", "checksums"]),
+            ("coulomb_tanh", &["coefficient", "shear_limit", "tables", "checksums", "regularisation"]),
+            ("coulomb_elastic_slip", &["coefficient", "shear_limit", "tables", "checksums", "elastic_slip"]),
         ],
     }),
 };
@@ -428,6 +429,7 @@ static RECORD: Keys = table(
     "The columns of a file of measured motion, as a resolved scene has them.",
     &[
         Key::new("file", Kind::Text("the name of the file")),
+        Key::new("checksum", Kind::Text("the checksum of its bytes")).about("put there where the file is read"),
         Key::new("time", Kind::Numbers("an array of times in s")).about("since the phase began"),
         Key::new("approach", Kind::Numbers("an array of approaches in m")),
         Key::new("normal_force", Kind::Numbers("an array of forces in N/m")),

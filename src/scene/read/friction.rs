@@ -19,7 +19,13 @@ pub(super) fn read(section: &Section) -> Result<Friction> {
         Some(key) => Law::CoulombTanh { regularisation: section.number(key)? },
     };
     let shear_limit = section.optional_number("shear_limit")?;
-    let friction = Friction { law, coefficient: coefficient(section)?, shear_limit, tables: tables(section)? };
+    let friction = Friction {
+        law,
+        coefficient: coefficient(section)?,
+        shear_limit,
+        tables: tables(section)?,
+        checksums: checksums(section)?,
+    };
     if let Coefficient::Formula(formula) = &friction.coefficient {
         friction
             .expression(formula)
@@ -50,4 +56,14 @@ fn tables(section: &Section) -> Result<BTreeMap<String, Vec<[f64; 2]>>> {
         }
     };
     tables.table().iter().map(read).collect()
+}
+
+/// The checksums of the files that they were read from, where that was for this scene.
+fn checksums(section: &Section) -> Result<Vec<String>> {
+    let sums = section.values("checksums")?.iter().enumerate();
+    let text = |(index, value): (usize, &Value)| match value.as_str() {
+        Some(sum) => Ok(sum.to_owned()),
+        None => Err(section.must_be(&format!("checksums.{index}"), "the checksum of a file, a text", value)),
+    };
+    sums.map(text).collect()
 }

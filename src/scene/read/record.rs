@@ -2,6 +2,7 @@
 
 use toml::{Table, Value};
 
+use crate::checksum;
 use crate::error::Result;
 use crate::scene::Record;
 use crate::scene::keys::{Section, advice};
@@ -27,6 +28,7 @@ pub(in crate::scene) fn table(name: &str, text: &str) -> std::result::Result<Tab
     let read = table::Table::read(text.as_bytes()).map_err(|fault| fault.to_string())?;
     let mut found = Table::new();
     found.insert("file".into(), Value::String(name.to_owned()));
+    found.insert("checksum".into(), Value::String(checksum::text(text.as_bytes())));
     let names: Vec<&str> =
         (0..read.width()).map(|column| column_called(&read, column)).collect::<std::result::Result<_, _>>()?;
     let columns = read.columns(&(0..read.width()).collect::<Vec<_>>()).map_err(|fault| fault.to_string())?;
@@ -64,6 +66,7 @@ pub(super) fn read(phase: &Section, section: &Section) -> Result<Record> {
     let column = |key: &str| section.numbers(key);
     let record = Record {
         file: section.optional_text("file")?.unwrap_or_default(),
+        checksum: section.optional_text("checksum")?,
         time: column("time")?,
         approach: column("approach")?,
         normal_force: column("normal_force")?,
