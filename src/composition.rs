@@ -33,8 +33,8 @@ use crate::petsc::{Integrator, Linear, Matrix, Search, Settings, Vector};
 use crate::profile::{Extruded, Profile, Surface};
 use crate::scene::{self, Scene, Stepping, When};
 use crate::solve::{
-    Body, Bordered, Compliance, Condensed, Convection, Following, Freedom, Heat, Heated, Inside, Interior, LARGE_FACE,
-    LARGE_PERIODIC_FACE, Layered, MAX_NEWTON, Medium, Monolithic, PeriodicColumn, Relaxation, Relaxations, Remembering,
+    Body, Bordered, Compliance, Condensed, Convection, Coupled, Following, Freedom, Heat, Heated, Inside, Interior,
+    LARGE_FACE, LARGE_PERIODIC_FACE, Layered, MAX_NEWTON, Medium, Monolithic, PeriodicColumn, Relaxation, Remembering,
     Response, Solid, Sparse, TransientProblem, Way,
 };
 use crate::wear::{self, Wear};
@@ -175,7 +175,7 @@ fn assembled<const D: usize>(
     let mut problem = match form(scene) {
         Form::Monolithic => monolithic(comm, scene, (solid, materials), interface)?,
         Form::Following => following(comm, scene, (solid, materials), interface, compliances)?,
-        Form::Remembering => remembering(comm, scene, (solid, materials), interface)?,
+        Form::Remembering | Form::Coupled => remembering(comm, scene, (solid, materials), interface)?,
     };
     let phases = phases(scene, penetration(scene, problem.strategy.as_mut(), clearance)?);
     if let Some((heat, solid)) = heated {
@@ -196,12 +196,15 @@ pub enum Form {
     Following,
     /// On the face; the interior has a memory of its own.
     Remembering,
+    /// The same, and each cell has times of its own.
+    Coupled,
 }
 
 /// How `scene` is solved: on its contact face unless it says otherwise.
 pub fn form(scene: &Scene) -> Form {
     match scene.solver.strategy {
         scene::Strategy::Monolithic => Form::Monolithic,
+        scene::Strategy::Auto | scene::Strategy::Condensed if scene.is_coupled() => Form::Coupled,
         scene::Strategy::Auto | scene::Strategy::Condensed if Materials::new(scene).relax_alike() => Form::Following,
         scene::Strategy::Auto | scene::Strategy::Condensed => Form::Remembering,
     }
@@ -279,7 +282,8 @@ fn remembering<const D: usize>(
     (solid, materials): (Solid<D>, Materials),
     interface: Interface<D>,
 ) -> Result<Strategy> {
-    let inside = if comm.rank() == 0 { inside(&solid, materials).map(Some) } else { Ok(None) };
+    let make = || if scene.is_coupled() { coupled(scene, &solid, materials) } else { inside(&solid, materials) };
+    let inside = if comm.rank() == 0 { make().map(Some) } else { Ok(None) };
     let backing = Remembering::new(comm, agree(comm, inside)?);
     let u = face_vector(comm, &interface)?;
     condensed(comm, scene, (u, solid.source.height()), (interface, backing))
@@ -291,7 +295,8 @@ fn condensed<const D: usize, R: Response<D> + 'static>(
     (u, height): (Vector, f64),
     (interface, response): (Interface<D>, R),
 ) -> Result<Strategy> {
-    let periodic = scene.layer().is_some_and(scene::Layer::is_periodic);
+    // Where each cell has times of its own a period has no waves.
+    let periodic = scene.layer().is_some_and(scene::Layer::is_periodic) && !scene.is_coupled();
     let components = D * interface.face().count();
     let mounts = mounts::<D>(scene);
     let freedom = freedom::<D>(scene, height);
@@ -339,12 +344,18 @@ fn compliance<const D: usize>(solid: &Solid<D>) -> Result<Compliance<D>> {
 /// The whole body with its memory, on this rank alone.
 fn inside<const D: usize>(solid: &Solid<D>, materials: Materials) -> Result<Box<dyn Inside<D>>> {
     if let Some(column) = PeriodicColumn::new(solid) {
-        let Materials { times, series, memory: rule, .. } = materials;
-        return Ok(Box::new(Layered::new(solid.clone(), &column, Relaxations { times, rule, series })));
+        return Ok(Box::new(Layered::new(solid.clone(), &column, materials.relaxations())));
     }
     let body = Body::new(SimpleCommunicator::self_comm(), solid)?;
     let bulk = materials.bulk(&body, &body.vector()?)?;
     Ok(Box::new(Sparse::new(bulk, body)?))
+}
+
+/// The same where each cell has its own temperature.
+fn coupled<const D: usize>(scene: &Scene, solid: &Solid<D>, materials: Materials) -> Result<Box<dyn Inside<D>>> {
+    let shifts = scene.materials.iter().map(|material| material.shift.map(scene::Shifting::law)).collect();
+    let body = Body::new(SimpleCommunicator::self_comm(), solid)?;
+    Ok(Box::new(Coupled::new(solid, body, materials.relaxations(), shifts)?))
 }
 
 /// What is asked of the heat. Materials without numbers for it were refused.
@@ -361,11 +372,8 @@ fn heat_of(scene: &Scene, heat: &scene::Heat, materials: &Materials) -> Heat {
         base: heat.base.temperature(),
         convection: heat.convection.as_ref().map(convection),
         share: heat.share,
-        arms: heat.arms.then(|| Relaxations {
-            times: materials.times.clone(),
-            rule: materials.memory,
-            series: materials.series.clone(),
-        }),
+        arms: heat.arms.then(|| materials.relaxations()),
+        coupled: heat.coupled,
     }
 }
 

@@ -427,6 +427,7 @@ impl Random {
                     memory,
                     conductivity: self.of(&[None, Some(0.2)]),
                     heat_capacity: self.of(&[None, Some(2e6)]),
+                    shift: None,
                 }
             })
             .collect()

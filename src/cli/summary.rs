@@ -77,8 +77,9 @@ fn heat_in_words(heat: &Heat) -> String {
     let air = heat.convection.map_or("insulated beside the contact".to_owned(), |air| {
         format!("{} W/m^2/K to air at {} K beside the contact", air.coefficient, air.temperature)
     });
+    let ways = if heat.coupled { "whose temperature shifts the times of the arms" } else { "one way" };
     format!(
-        "heat, one way: {} of what friction dissipates{arms}; from {} K, base {base}, face {air}",
+        "heat, {ways}: {} of what friction dissipates{arms}; from {} K, base {base}, face {air}",
         heat.share, heat.initial
     )
 }
@@ -348,6 +349,10 @@ fn strategy(scene: &Scene, unknowns: usize) -> String {
             }
             lines
         }
+        Form::Coupled => vec![
+            "condensed: the arms follow the temperature of their cells; one assembly and one",
+            "factorisation per step (by the first rank alone), Newton on the nodes in contact",
+        ],
         Form::Remembering if by_wave => vec![
             "condensed: not all moduli relax alike, so that the interior has a memory of its own;",
             "periodic layer: it is solved for wavenumber by wavenumber (by the first rank alone), once per step,",
@@ -374,6 +379,7 @@ fn alone(scene: &Scene, unknowns: usize) -> Option<&'static str> {
             Some("with so few unknowns several ranks wait for each other longer than they work")
         }
         Form::Monolithic => None,
+        Form::Coupled => Some("the first rank assembles and factorises the body alone"),
         _ => by_wave.then_some("without a sparse matrix, ranks have nothing to share"),
     }
 }

@@ -18,7 +18,7 @@ use crate::petsc::Vector;
 use crate::rheology::Memory;
 use crate::rheology::prony::{Prony, common_times};
 use crate::scene::{self, MeshFile, Phase, Scene};
-use crate::solve::{Body, Moduli, Region};
+use crate::solve::{Body, Moduli, Region, Relaxations};
 
 /// The mesh of the scene at `file`, on every rank. A .msh file is read by rank 0 only. Collective.
 pub fn mesh(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<Meshed> {
@@ -292,6 +292,11 @@ impl Materials {
     /// Whether all moduli of all regions relax in one way, so that the interior follows the face for all time.
     pub fn relax_alike(&self) -> bool {
         self.series.len() == 1
+    }
+
+    /// How the parts of the bulk relax.
+    pub fn relaxations(&self) -> Relaxations {
+        Relaxations { times: self.times.clone(), rule: self.memory, series: self.series.clone() }
     }
 
     /// The body at rest. The first part carries the diagonal of the held unknowns.

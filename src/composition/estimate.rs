@@ -26,6 +26,10 @@ const WAVE_ARM: f64 = 24.5;
 /// s per step and node of such a face with friction and without, and per step and node of such a layer.
 const FACE_STEP: [f64; 2] = [5e-6, 1.5e-6];
 const WAVE_STEP: f64 = 5e-8;
+/// s per cube of the components of a face, for its dense compliance.
+const FACE_INVERSE: f64 = 2e-10;
+/// The most components of a face whose arms follow the temperature.
+const MOST_COUPLED: usize = 4096;
 /// What an index of PETSc counts.
 const MOST: f64 = i32::MAX as f64;
 
@@ -54,7 +58,8 @@ impl Estimate {
         let arms = (scene.materials.iter().map(|material| material.arms.len()).sum::<usize>() + 4) as f64;
         // Half of the face in contact: a small dense factorisation and some products with the compliance.
         let contact = newton * (2e-10 * (face / 2.0).powi(3).min(face.powi(2) * 300.0) + 3e-9 * face * face);
-        let by_wave = scene.layer().is_some_and(Layer::is_periodic);
+        let periodic = scene.layer().is_some_and(Layer::is_periodic);
+        let by_wave = periodic && form(scene) != Form::Coupled;
         // Of a periodic layer in space transforms of the face, else products with the whole compliance.
         let contact = match by_wave && outline.is_in_space() {
             true => 20.0 * newton * 1e-7 * face,
@@ -75,12 +80,17 @@ impl Estimate {
             Form::Remembering if by_wave => {
                 (contact + 3e-8 * unknowns * arms, (12.0 + arms) * vector + 80.0 * unknowns)
             }
+            // Each step makes one anew; arms are at the corners of each cell.
+            Form::Coupled => (
+                contact + 2.0 * fill.solve + fill.factor + FACE_INVERSE * face.powi(3),
+                compliance + fill.memory + 3.0 * matrix + 2.0_f64.powf(axes) * arms * vector,
+            ),
             Form::Remembering => {
                 (contact + 2.0 * fill.solve, kept * (compliance + fill.memory) + 3.0 * matrix + arms * vector)
             }
         };
         // One component, with a factor or a chain of its own.
-        let [more_step, more_memory] = match (&scene.heat, by_wave) {
+        let [more_step, more_memory] = match (&scene.heat, periodic) {
             (None, _) => [0.0; 2],
             (Some(_), true) => [6e-8 * unknowns / axes, 60.0 * unknowns / axes],
             (Some(_), false) => {
@@ -103,7 +113,7 @@ impl Estimate {
             Form::Following | Form::Monolithic => {
                 Self { step: step * nodes, memory: PROGRAM + nodes * (node + FACE_ARM * arms) }
             }
-            Form::Remembering => {
+            Form::Remembering | Form::Coupled => {
                 // The shear and the bulk of each material.
                 let parts = 2.0 * scene.materials.len() as f64;
                 let of_row = WAVE_NODE + WAVE_PART * parts + WAVE_ARM * arms;
@@ -115,7 +125,7 @@ impl Estimate {
 
 /// Whether a layer in space is solved by transforms of its face.
 fn by_transforms(scene: &Scene, layer: &Layer) -> bool {
-    layer.spans.len() == 2 && layer.is_periodic() && form(scene) != Form::Monolithic
+    layer.spans.len() == 2 && layer.is_periodic() && !matches!(form(scene), Form::Monolithic | Form::Coupled)
 }
 
 /// Refuses what PETSc's 32-bit indices do not count: unknowns, and what a sparse system on one rank has of entries.
@@ -125,7 +135,8 @@ pub fn countable(scene: &Scene, file: &Path) -> Result<()> {
     let face = dimensions * layer.face_nodes() as f64;
     let body = face * (layer.rows as f64 + 1.0);
     let entries = body * dimensions * 3.0_f64.powf(dimensions);
-    let (what, count) = match layer.is_periodic() && form(scene) != Form::Monolithic {
+    let waves = !matches!(form(scene), Form::Monolithic | Form::Coupled);
+    let (what, count) = match layer.is_periodic() && waves {
         true if scene.output.bulk_at.is_empty() => ("unknowns of the face", face),
         true => ("displacements, of which output.bulk_at makes a mesh", body),
         false => ("entries of the stiffness", entries),
@@ -143,6 +154,8 @@ struct Fill {
     memory: f64,
     /// s for one solve
     solve: f64,
+    /// s for one factorisation, with what is ordered for it
+    factor: f64,
 }
 
 impl Fill {
@@ -158,7 +171,8 @@ impl Fill {
             false => 3e-7 * unknowns * (1.0 + 0.05 * log),
             true => 2e-10 * memory,
         };
-        Self { memory, solve }
+        let factor = if in_space { 25.0 * solve } else { 5e-6 * unknowns };
+        Self { memory, solve, factor }
     }
 }
 
@@ -169,6 +183,23 @@ pub(super) fn fits(comm: &SimpleCommunicator, scene: &Scene, file: &Path, outlin
     agree(comm, mine)
 }
 
+/// Refuses a face that is too large for a dense compliance in each step: beyond [`MOST_COUPLED`] components a step takes half a minute.
+fn coupled_face(scene: &Scene, file: &Path, outline: &Outline) -> Result<()> {
+    let axes = if outline.is_in_space() { 3 } else { 2 };
+    let components = axes * outline.face_nodes;
+    if form(scene) != Form::Coupled || components <= MOST_COUPLED {
+        return Ok(());
+    }
+    let key = if scene.layer().is_some() { "layer.cells" } else { "mesh.file" };
+    let reason = format!(
+        "{} nodes of the face, and with heat.coupled = true, which inverts a dense matrix of the face in each step, at most {} are \
+         solved for; take fewer cells along the face, or coupled = false",
+        outline.face_nodes,
+        MOST_COUPLED / axes
+    );
+    Err(Error::scene(file, key, reason))
+}
+
 /// The same for this process, the first of so many ranks.
 ///
 /// The first rank has the interior of a condensed problem alone; all ranks share one system of all unknowns.
@@ -176,6 +207,7 @@ pub(super) fn fits(comm: &SimpleCommunicator, scene: &Scene, file: &Path, outlin
 /// # Errors
 /// [`Error::Scene`] with the remedy.
 pub fn affordable(scene: &Scene, file: &Path, outline: &Outline, ranks: usize) -> Result<()> {
+    coupled_face(scene, file, outline)?;
     let share = if form(scene) == Form::Monolithic { ranks as f64 } else { 1.0 };
     let steps = size_of::<Target>() as f64 * scene.steps() as f64;
     let needed = (Estimate::of(scene, outline).memory - PROGRAM) / share + steps;

@@ -214,17 +214,21 @@ impl Layer {
 
     /// The depths without regard to strata, m.
     fn graded(&self) -> Vec<f64> {
-        let nz = self.rows;
-        let ratio = if nz > 1 { self.grading.powf(1.0 / (nz - 1) as f64) } else { 1.0 };
-        let mut sums = vec![0.0];
-        let mut height = 1.0;
-        for _ in 0..nz {
-            sums.push(sums[sums.len() - 1] + height);
-            height *= ratio;
-        }
-        let total = sums[nz];
-        sums.iter().map(|sum| self.depth * (sum / total)).collect()
+        graded(self.depth, self.rows, self.grading)
     }
+}
+
+/// The depths, m, of so many rows of cells, the lowest of them `grading` times as high as the highest; from the face down.
+pub fn graded(depth: f64, rows: usize, grading: f64) -> Vec<f64> {
+    let ratio = if rows > 1 { grading.powf(1.0 / (rows - 1) as f64) } else { 1.0 };
+    let mut sums = vec![0.0];
+    let mut height = 1.0;
+    for _ in 0..rows {
+        sums.push(sums[sums.len() - 1] + height);
+        height *= ratio;
+    }
+    let total = sums[rows];
+    sums.iter().map(|sum| depth * (sum / total)).collect()
 }
 
 /// The columns around a cell: from left to right, or counter-clockwise.

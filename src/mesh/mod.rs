@@ -10,7 +10,7 @@ mod partition;
 
 pub use cell::Cell;
 pub use face::{Axis, Face, Facet, FacetPoint, Grid, apart};
-pub use layer::{Layer, Sides, Span};
+pub use layer::{Layer, Sides, Span, graded};
 pub use partition::Numbering;
 
 use nalgebra::SVector;

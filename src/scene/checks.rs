@@ -6,8 +6,8 @@ use std::path::Path;
 
 use super::keys::tables::{IN_PLANE, IN_SPACE};
 use super::{
-    Arm, Body, Extend, Friction, Indenter, Law, Layer, Material, Memory, MeshFile, Motion, Phase, Quadrature, Scene,
-    Sides, Span, Stepping, Strategy, WearLaw, Wearing, When, keys,
+    Arm, Body, Extend, Friction, Heat, Indenter, Law, Layer, Material, Memory, MeshFile, Motion, Phase, Quadrature,
+    Scene, Sides, Span, Stepping, Strategy, WearLaw, Wearing, When, keys,
 };
 use crate::error::{Error, Result};
 
@@ -261,10 +261,34 @@ fn heat(scene: &Scene) -> Check {
             }
         }
     }
-    match heat.arms && scene.materials.iter().all(Material::is_elastic) {
-        true => fail("heat.arms", "is true, and no material has arms; leave it out"),
-        false => Ok(()),
+    if heat.arms && scene.materials.iter().all(Material::is_elastic) {
+        return fail("heat.arms", "is true, and no material has arms; leave it out");
     }
+    if heat.coupled { coupled(scene, heat) } else { Ok(()) }
+}
+
+/// Arms that follow the temperature begin at the initial one, by a law, on the face.
+fn coupled(scene: &Scene, heat: &Heat) -> Check {
+    let follows = |material: &Material| material.shift.is_some() && !material.is_elastic();
+    if !scene.materials.iter().any(follows) {
+        let reason =
+            "is true, and no material with arms says by which law their times go with the temperature; give it shift";
+        return fail("heat.coupled", reason);
+    }
+    if scene.solver.strategy == Strategy::Monolithic {
+        let reason = "with heat.coupled = true must be \"condensed\" or \"auto\": all arms of the monolithic strategy have one temperature";
+        return fail("solver.strategy", reason);
+    }
+    for (index, material) in scene.materials.iter().enumerate() {
+        if let Some(shift) = material.shift.filter(|shift| shift.law().reference() != heat.initial) {
+            let (key, at) = (material_key(&scene.materials, index, "temperature"), shift.law().reference());
+            return fail(
+                &key,
+                &format!("is {at} K; with heat.coupled = true it must be heat.initial, {} K", heat.initial),
+            );
+        }
+    }
+    Ok(())
 }
 
 /// Not both a force and a mount hold the indenter along the approach.

@@ -2,7 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
-/// The temperature of the body, one way: what is dissipated heats it.
+/// The temperature of the body: what is dissipated heats it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Heat {
     /// Of all of it at t = 0, K, at least 0.
@@ -16,7 +16,7 @@ pub struct Heat {
     pub share: f64,
     /// Whether what the arms dissipate heats, too.
     pub arms: bool,
-    /// Whether the temperature shifts the times of the arms: false.
+    /// Whether the temperature of a cell shifts the times of its arms.
     pub coupled: bool,
 }
 

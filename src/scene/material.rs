@@ -2,8 +2,33 @@
 
 use nalgebra::Vector2;
 
-use super::{Arm, Material, Motion, Phase, PoissonRule, Scene};
-use crate::rheology::{self, Band, Loading, Poisson, Prony, Ramp};
+use super::{Arm, Material, Motion, Phase, PoissonRule, Scene, Shifting};
+use crate::rheology::{self, Band, Loading, Poisson, Prony, Ramp, Shift};
+
+impl From<Shift> for Shifting {
+    fn from(shift: Shift) -> Self {
+        match shift {
+            Shift::Wlf { reference, c1, c2 } => {
+                Self::Wlf { reference_temperature: reference, temperature: reference, c1, c2 }
+            }
+            Shift::Arrhenius { reference, activation_energy } => {
+                Self::Arrhenius { reference_temperature: reference, temperature: reference, activation_energy }
+            }
+        }
+    }
+}
+
+impl Shifting {
+    /// The law.
+    pub fn law(self) -> Shift {
+        match self {
+            Self::Wlf { reference_temperature: reference, c1, c2, .. } => Shift::Wlf { reference, c1, c2 },
+            Self::Arrhenius { reference_temperature: reference, activation_energy, .. } => {
+                Shift::Arrhenius { reference, activation_energy }
+            }
+        }
+    }
+}
 
 impl Material {
     /// Whether nothing relaxes.

@@ -192,9 +192,38 @@ pub struct Material {
     /// Heat capacity per volume, J/m^3/K, > 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub heat_capacity: Option<f64>,
+    /// How the times go with the temperature, where that of the body is coupled: from the one that they are those of.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub shift: Option<Shifting>,
     /// Where all this comes from: the file, the power law and the error of its series, the shift of the times.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
+}
+
+/// The law by which the times of a material go with the temperature, as keys.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(tag = "shift", rename_all = "lowercase")]
+pub enum Shifting {
+    /// log10 a_T = -c1 (T - T_ref)/(c2 + T - T_ref)
+    Wlf {
+        /// K
+        reference_temperature: f64,
+        /// That of the arms as they stand here, K: the reference.
+        temperature: f64,
+        /// -
+        c1: f64,
+        /// K
+        c2: f64,
+    },
+    /// ln a_T = E_a/R (1/T - 1/T_ref)
+    Arrhenius {
+        /// K
+        reference_temperature: f64,
+        /// That of the arms as they stand here, K: the reference.
+        temperature: f64,
+        /// J/mol
+        activation_energy: f64,
+    },
 }
 
 /// One arm of a Prony series: M(t) = M_inst (1 - sum_i weight_i (1 - exp(-t / time_i))).

@@ -55,6 +55,10 @@ pub fn scene(table: &Table, file: &Path) -> Result<Scene> {
         materials,
     };
     checks::all(&scene, file)?;
+    if !scene.is_coupled() {
+        // At one temperature its law has done what it is for.
+        scene.materials.iter_mut().for_each(|material| material.shift = None);
+    }
     scene.clamp_moments();
     Ok(scene)
 }

@@ -40,6 +40,11 @@ impl Scene {
         steps + (inside + 1e-6) as usize
     }
 
+    /// Whether the arms follow the temperature of the body.
+    pub fn is_coupled(&self) -> bool {
+        self.heat.is_some_and(|heat| heat.coupled)
+    }
+
     /// The layer, where the body is one.
     pub fn layer(&self) -> Option<&Layer> {
         match &self.body {

@@ -223,14 +223,28 @@ impl<const D: usize> Body<D> {
     /// Displacement and stress at this rank's nodes; stress is the mean of what the cells around a node say.
     /// `effective` holds what [`Self::around`] gave for each part's effective displacement.
     pub fn fields(&mut self, u: &Vector, effective: &[Vec<f64>]) -> Result<BulkFields> {
+        self.fields_by(u, |_, places, part| {
+            let at = |&place: &u32| SVector::from_column_slice(&effective[part][D * place as usize..][..D]);
+            places.corners().iter().map(at).collect()
+        })
+    }
+
+    /// [`Self::fields`] where `of` gives the effective displacement of the corners of a cell, which are at the places in what
+    /// [`Self::around`] gives, in a part.
+    pub fn fields_by(
+        &mut self,
+        u: &Vector,
+        of: impl Fn(usize, &Cell<D>, usize) -> Vec<SVector<f64, D>>,
+    ) -> Result<BulkFields> {
         self.recovery(u)?;
         let Some(recovery) = &self.recovery else { return Ok(BulkFields::default()) };
         let mut sums = vec![(Stress::zeros(), 0.0); self.numbering.owned.len()];
         for (&cell, places) in recovery.cells.iter().zip(&recovery.places) {
-            let region = self.cells.region(cell);
-            let answers = [(region.moduli.shear, region.shear_part), (region.moduli.bulk, region.bulk_part)]
-                .map(|(modulus, part)| (modulus, effective[part].as_slice()));
-            let stress = corner_stress(&self.cells, cell, places, answers);
+            let Region { moduli, shear_part, bulk_part } = self.cells.region(cell);
+            let [u, v] = [shear_part, bulk_part].map(|part| of(cell, places, part));
+            let [shear, bulk] =
+                [(moduli.shear, &u), (moduli.bulk, &v)].map(|(modulus, displacement)| Answer { modulus, displacement });
+            let stress = self.cells.placed(cell, |placed| placed.corner_stress(shear, bulk));
             for (&unknown, stress) in self.cells.mesh.cell_unknowns(cell).corners().iter().zip(stress) {
                 if let Some(local) = self.numbering.local(unknown) {
                     sums[local].0 += stress;
@@ -251,7 +265,7 @@ impl<const D: usize> Body<D> {
     }
 
     /// The held unknowns that this rank owns, as global row numbers.
-    fn held(&self) -> Vec<i32> {
+    pub fn held(&self) -> Vec<i32> {
         let rows = |&unknown: &u32| {
             let (global, held) = (self.numbering.global[unknown as usize], self.cells.mesh.held[unknown as usize]);
             (0..D).filter(move |&component| held[component]).map(move |component| D as i32 * global + component as i32)
@@ -271,23 +285,6 @@ fn in_space<const D: usize>(vector: &[f64]) -> [f64; 3] {
         2 => [vector[0], 0.0, vector[1]],
         _ => [vector[0], vector[1], vector[2]],
     }
-}
-
-/// Stress at the corners of a cell, Pa. `answers`: the shear and the bulk modulus, Pa, each with the displacements that it answers
-/// to, of which the cell's are at `places`, node by node.
-fn corner_stress<const D: usize>(
-    cells: &Cells<D>,
-    cell: usize,
-    places: &Cell<D>,
-    answers: [(f64, &[f64]); 2],
-) -> Vec<Stress> {
-    let of = |values: &[f64]| -> Vec<SVector<f64, D>> {
-        places.corners().iter().map(|&place| SVector::from_column_slice(&values[D * place as usize..][..D])).collect()
-    };
-    let [u, v] = answers.map(|(_, values)| of(values));
-    let [shear, bulk] =
-        [(answers[0].0, &u), (answers[1].0, &v)].map(|(modulus, displacement)| Answer { modulus, displacement });
-    cells.placed(cell, |placed| placed.corner_stress(shear, bulk))
 }
 
 impl<const D: usize> Recovery<D> {

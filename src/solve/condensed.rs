@@ -13,7 +13,7 @@ use nalgebra::SVector;
 use super::accepted::AcceptedFace;
 use super::response::{Response, unprepared};
 use super::traction::{self, Answer, Behind, Held, Laws, Outcome, Site};
-use super::{BulkFields, Contact, TransientProblem, Work};
+use super::{BulkFields, Contact, Tempered, TransientProblem, Work};
 use crate::energy::Energy;
 use crate::error::Result;
 use crate::friction::Law;
@@ -514,6 +514,10 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
 
     fn warm(&mut self, face: &[f64]) {
         self.face.interface.warm(face);
+    }
+
+    fn tempered(&mut self) -> Option<&mut dyn Tempered> {
+        self.response.tempered()
     }
 
     fn energy(&self) -> Option<Energy> {

@@ -1,4 +1,5 @@
-//! The temperature of the body, one way: what a step dissipates heats, and nothing of it enters Newton's method.
+//! The temperature of the body: what a step dissipates heats, and nothing of it enters Newton's method. The next step begins at what
+//! comes out: so do the coefficient of friction and, where they are coupled, the times of the arms.
 //!
 //! After each accepted step of length dt, with theta the temperature over that of the base (or over the initial one where the base
 //! is insulated), on the body's own cells (crate::element::conduction) and by backward Euler,
@@ -33,7 +34,7 @@ use mpi::traits::Communicator;
 
 use super::body::Solid;
 use super::response::Relaxations;
-use super::{BulkFields, Contact, TransientProblem, Work};
+use super::{BulkFields, Contact, Tempered, TransientProblem, Work};
 use crate::energy::{Energy, HeatEnergy};
 use crate::error::{Error, Result};
 use crate::loading::Phase;
@@ -80,6 +81,8 @@ pub struct Heat {
     pub share: f64,
     /// How the parts of the bulk relax, where what the arms dissipate heats; none = it does not.
     pub arms: Option<Relaxations>,
+    /// Whether the arms follow the temperature of their cells.
+    pub coupled: bool,
 }
 
 impl Heat {
@@ -88,6 +91,9 @@ impl Heat {
         self.base.unwrap_or(self.initial)
     }
 }
+
+/// The change of ln a_T of a cell over an adaptive step that is aimed at most at.
+pub const MOST_SHIFT: f64 = 0.1;
 
 /// The temperatures at an accepted state.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -120,6 +126,10 @@ pub struct Heated<const D: usize> {
     /// The unknown of each node of the face.
     face: Vec<u32>,
     thermal: Thermal,
+    /// Of the last step, the greatest of a cell, 1/s: d(ln a_T)/dt.
+    shifting: f64,
+    /// The local error allowed in a step of an adaptive phase, m.
+    allowed: Option<f64>,
 }
 
 impl<const D: usize> Heated<D> {
@@ -133,11 +143,18 @@ impl<const D: usize> Heated<D> {
         inner.keep_heat();
         let made = if comm.rank() == 0 { conductor(solid, &heat).map(Some) } else { Ok(None) };
         let conductor = agree(comm, made)?;
-        let arms = heat.arms.clone().filter(|_| comm.rank() == 0).map(|relaxations| ArmHeat::new(solid, relaxations));
+        // What has arms at its cells says itself what they dissipate.
+        let arms = heat
+            .arms
+            .clone()
+            .filter(|_| comm.rank() == 0 && !heat.coupled)
+            .map(|relaxations| ArmHeat::new(solid, relaxations));
         let face = solid.source.face().unknown;
         let (flux, thermal) = (vec![0.0; face.len()], Thermal::default());
         let (comm, source) = (comm.duplicate(), solid.source.clone());
-        let mut heated = Self { comm, inner, heat, conductor, arms, source, unknowns: OnceCell::new(), face, thermal };
+        let (shifting, unknowns, allowed) = (0.0, OnceCell::new(), None);
+        let mut heated =
+            Self { comm, inner, heat, conductor, arms, source, unknowns, face, thermal, shifting, allowed };
         heated.settle(flux, HeatEnergy::default())?;
         Ok(heated)
     }
@@ -159,13 +176,18 @@ impl<const D: usize> Heated<D> {
         let mut flux = agree(&self.comm, mine)?;
         flux.resize(areas.len(), 0.0);
         flux.iter_mut().zip(&areas).for_each(|(flux, area)| *flux /= area);
-        self.settle(flux, energy)
+        self.shifting = self.settle(flux, energy)? / dt;
+        Ok(())
     }
 
     /// What the arms dissipated at each unknown in a step of length `dt` that ended at `u`, over `dt`, on rank 0, where it heats. Collective.
     fn of_arms(&mut self, dt: f64, u: &Vector) -> Result<Option<Vec<f64>>> {
         if self.heat.arms.is_none() {
             return Ok(None);
+        }
+        if self.heat.coupled {
+            let over = |body: &mut dyn Tempered| body.spent().iter().map(|heat| heat / dt).collect();
+            return Ok(self.inner.tempered().map(over));
         }
         let fields = self.inner.bulk_fields(u)?;
         let (unknown, count) = self.unknowns();
@@ -182,8 +204,9 @@ impl<const D: usize> Heated<D> {
         })
     }
 
-    /// Makes `thermal` that of the conductor, on every rank, and tells it to the laws. Collective.
-    fn settle(&mut self, flux: Vec<f64>, energy: HeatEnergy) -> Result<()> {
+    /// Makes `thermal` that of the conductor, on every rank, and tells it to the laws and to the arms; gives the greatest change of
+    /// ln a_T of a cell. Collective.
+    fn settle(&mut self, flux: Vec<f64>, energy: HeatEnergy) -> Result<f64> {
         let reference = self.heat.reference();
         let of_here = || -> Result<Vec<f64>> {
             let Some(conductor) = &self.conductor else { return Ok(Vec::new()) };
@@ -192,12 +215,13 @@ impl<const D: usize> Heated<D> {
             let highest = field.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             let mean = conductor.content() / conductor.whole();
             let HeatEnergy { entered, convected, conducted, .. } = energy;
-            let numbers = [reference + highest, reference + mean, entered, stored, convected, conducted];
+            let shifted = self.inner.tempered().map_or(0.0, |body| body.temper(reference, &field));
+            let numbers = [reference + highest, reference + mean, entered, stored, convected, conducted, shifted];
             let face = self.face.iter().map(|&unknown| reference + field[unknown as usize]);
             Ok(numbers.into_iter().chain(face).chain(flux.iter().copied()).collect())
         };
         let all = share_numbers(&self.comm, of_here)?;
-        let (numbers, fields) = all.split_at(6);
+        let (numbers, fields) = all.split_at(7);
         let (face, flux) = fields.split_at(self.face.len());
         let [entered, stored, convected, conducted] = [2, 3, 4, 5].map(|i| numbers[i]);
         self.thermal = Thermal {
@@ -208,7 +232,7 @@ impl<const D: usize> Heated<D> {
             energy: HeatEnergy { entered, stored, convected, conducted },
         };
         self.inner.warm(&self.thermal.face);
-        Ok(())
+        Ok(numbers[6])
     }
 
     /// The temperature of each node of the mesh, K, on every rank. Collective.
@@ -255,6 +279,7 @@ fn conductor<const D: usize>(solid: &Solid<D>, heat: &Heat) -> Result<Box<dyn Co
 
 impl<const D: usize> TransientProblem for Heated<D> {
     fn begin(&mut self, phase: Phase) -> Result<()> {
+        self.allowed = phase.adaptive.map(|adaptive| adaptive.allowed).filter(|_| self.heat.coupled);
         self.inner.begin(phase)
     }
 
@@ -291,7 +316,10 @@ impl<const D: usize> TransientProblem for Heated<D> {
     }
 
     fn departure(&mut self, step: Step, u: &Vector) -> Result<f64> {
-        self.inner.departure(step, u)
+        let departure = self.inner.departure(step, u)?;
+        // What is allowed where the change that the last rate foresees is: the controller takes errors to go with the square of the step.
+        let foreseen = self.shifting * step.dt / MOST_SHIFT;
+        Ok(self.allowed.map_or(departure, |allowed| departure.max(2.0 * allowed * foreseen * foreseen)))
     }
 
     fn approach_under(&mut self, force: f64, duration: f64) -> Result<f64> {
@@ -315,6 +343,10 @@ impl<const D: usize> TransientProblem for Heated<D> {
         self.inner.warm(face);
     }
 
+    fn tempered(&mut self) -> Option<&mut dyn Tempered> {
+        self.inner.tempered()
+    }
+
     fn thermal(&self) -> Option<&Thermal> {
         Some(&self.thermal)
     }
@@ -330,7 +362,7 @@ impl<const D: usize> TransientProblem for Heated<D> {
     fn save(&mut self, u: &Vector, snapshot: &mut Snapshot) -> Result<()> {
         self.inner.save(u, snapshot)?;
         let HeatEnergy { entered, stored, convected, conducted } = self.thermal.energy;
-        snapshot.put("heat", vec![entered, stored, convected, conducted]);
+        snapshot.put("heat", vec![entered, stored, convected, conducted, self.shifting]);
         self.arms.iter().for_each(|arms| arms.save(snapshot));
         let mine = self.conductor.as_ref().map_or(Ok(()), |conductor| conductor.save(snapshot));
         agree(&self.comm, mine)
@@ -338,12 +370,14 @@ impl<const D: usize> TransientProblem for Heated<D> {
 
     fn restore(&mut self, snapshot: &Snapshot, u: &mut Vector) -> Result<()> {
         self.inner.restore(snapshot, u)?;
-        let [entered, stored, convected, conducted] = snapshot.numbers("heat")?;
+        let [entered, stored, convected, conducted, shifting] = snapshot.numbers("heat")?;
         let arms = self.arms.as_mut().map_or(Ok(()), |arms| arms.restore(snapshot));
         let mine = arms.and(self.conductor.as_mut().map_or(Ok(()), |conductor| conductor.restore(snapshot)));
         agree(&self.comm, mine)?;
         let flux = vec![0.0; self.face.len()];
-        self.settle(flux, HeatEnergy { entered, stored, convected, conducted })
+        self.settle(flux, HeatEnergy { entered, stored, convected, conducted })?;
+        self.shifting = shifting;
+        Ok(())
     }
 
     fn contact(&mut self) -> Result<Contact<'_>> {

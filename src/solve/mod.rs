@@ -7,6 +7,7 @@ mod condensed;
 mod driver;
 mod face;
 mod heat;
+mod kinds;
 mod monolithic;
 mod on_face;
 mod response;
@@ -26,8 +27,8 @@ pub use driver::{Counts, Driver, MAX_NEWTON, Position};
 pub use heat::{Convection, Heat, Heated, Medium, Thermal};
 pub use monolithic::{Bordered, Monolithic};
 pub use response::{
-    Compliance, Following, Inside, Interior, Layered, Moving, PeriodicColumn, Relaxation, Relaxations, Remembering,
-    Response, Sparse, Transform, Travelling,
+    Compliance, Coupled, Following, Inside, Interior, Layered, Moving, PeriodicColumn, Relaxation, Relaxations,
+    Remembering, Response, Sparse, Transform, Travelling,
 };
 
 /// What helps most steps that do not converge.
@@ -78,6 +79,10 @@ pub trait TransientProblem {
     fn keep_heat(&mut self);
     /// Tells the laws the temperatures of the face's nodes, K.
     fn warm(&mut self, face: &[f64]);
+    /// The body, on the rank that has it, where its arms follow the temperature.
+    fn tempered(&mut self) -> Option<&mut dyn Tempered> {
+        None
+    }
     /// The temperatures at the accepted state, where they are solved for.
     fn thermal(&self) -> Option<&Thermal> {
         None
@@ -99,6 +104,15 @@ pub trait TransientProblem {
     fn bulk_fields(&mut self, u: &Vector) -> Result<BulkFields>;
     /// What it did so far.
     fn work(&self) -> Work;
+}
+
+/// A body whose arms follow the temperature of their cells, whole on one rank.
+pub trait Tempered {
+    /// Tells it the temperature of each unknown, `reference` + `theta`, K, for the steps that follow; gives the greatest change of
+    /// ln a_T that this is for a cell.
+    fn temper(&mut self, reference: f64, theta: &[f64]) -> f64;
+    /// What each unknown's share of the cells around it dissipated over the last step, J/m (J in space).
+    fn spent(&self) -> &[f64];
 }
 
 /// What a problem did on this rank. The first three are zero for an elastic, frictionless scene without bulk output.

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use super::{Case, Row};
 use crate::error::Result;
 use crate::oracle::heat::{Band, Conductor};
+use crate::oracle::prony::Relaxing;
 use crate::scene::{self, Scene, Source};
 use crate::solution::Solution;
 
@@ -19,7 +20,7 @@ const START: f64 = 293.0;
 
 pub fn cases(quick: bool) -> Result<Vec<Case>> {
     let cells = if quick { 16 } else { 32 };
-    let mut list = vec![half_space()?, in_air()?, half_plane(cells)?, flash(cells)?];
+    let mut list = vec![half_space()?, in_air()?, half_plane(cells)?, flash(cells)?, gradient()?];
     if !quick {
         list.push(periodic_layer(cells)?);
     }
@@ -202,4 +203,39 @@ fn flash(cells: usize) -> Result<Case> {
             vec![Row::halved("highest T, K", [fine, coarse * exact / coarse_exact], exact), balance(&solutions[1])]
         },
     ))
+}
+
+/// A layer from 293 K at its base to 303 K at its face, whose arm has the time of each depth, under a flat indenter that 0.5 N/m press
+/// down within 10 ms: D = (N/L) times the integral of J(t/a_T(z)) over the depth, J the creep of the modulus across a bonded layer.
+fn gradient() -> Result<Case> {
+    const RISE: f64 = 10.0;
+    let [shear, ratio, weight, tau] = [568.498, 0.3, 0.579, 0.817];
+    let [c1, c2, ramp, held, force] = [17.44, 51.6, 0.01, 2.0, 0.5];
+    let made = |rows: usize| {
+        let text = format!(
+            "[layer]\nwidth = 1.0\ndepth = 1.0\ncells = [2, {rows}]\nsides = \"periodic\"\n[material]\nshear_modulus = {shear}\n\
+             poisson_ratio = {ratio}\narms = [{{ weight = {weight}, time = {tau} }}]\npoisson_rule = \"constant_ratio\"\n\
+             conductivity = 100.0\nheat_capacity = 2e6\nshift = \"wlf\"\nc1 = {c1}\nc2 = {c2}\nreference_temperature = {START:?}\n\
+             temperature = {START:?}\n[indenter]\n{FLAT}\n[contact]\n[heat]\ninitial = {START:?}\nbase = {START:?}\ncoupled = true\n\
+             convection = {{ coefficient = 1e9, temperature = {:?} }}\n[[phase]]\nduration = 2e5\nsteps = 16\napproach = -1e-9\n\
+             [[phase]]\nduration = {ramp}\nsteps = 4\nnormal_force = {force}\n[[phase]]\nduration = {held:?}\nsteps = 100\n",
+            START + RISE
+        );
+        scene::read(&text, &Source { file: PathBuf::from("verify"), overrides: Vec::new() })
+    };
+    let solid =
+        Relaxing { instantaneous: 2.0 * shear * (1.0 - ratio) / (1.0 - 2.0 * ratio), arms: vec![(weight, tau)] };
+    let creep = solid.creep()?;
+    // The mean over the ramp, at a depth.
+    let at = |share: f64| {
+        let factor = 10f64.powf(-c1 * RISE * share / (c2 + RISE * share));
+        let times = (0..8).map(|i| held + ramp * (f64::from(i) + 0.5) / 8.0);
+        times.map(|t| creep.at(t / factor)).sum::<f64>() / 8.0
+    };
+    let exact = force * (0..4000).map(|i| at((f64::from(i) + 0.5) / 4000.0)).sum::<f64>() / 4000.0;
+    let scenes = vec![made(8)?, made(16)?];
+    Ok(case("arms in a gradient of temperature, WLF".into(), "quadrature", scenes, move |solutions| {
+        let [coarse, fine] = [0, 1].map(|i| solutions[i].last().approach);
+        vec![Row::refined("D, m", [fine, coarse], exact), Row::order("order", [fine, coarse], exact)]
+    }))
 }

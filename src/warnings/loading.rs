@@ -137,19 +137,22 @@ pub fn arms(before: &Before<'_>) -> Option<Warning> {
 /// How long what a point of the face feels takes to change, s, and for how long the path is straight: an approach, which is
 /// so throughout; the passage of the contact or a quarter of a cycle, a part of it.
 fn motions(phase: &Phase, met: &Encounter) -> Vec<(f64, f64)> {
-    let [towards, along] = speeds(phase);
+    let [towards, _] = speeds(phase);
     let mut list = Vec::new();
     if towards > 0.0 {
         list.push((phase.duration, phase.duration));
     }
-    if along > 0.0 {
-        let passage = match phase.motion {
-            Motion::Velocity(_) | Motion::Measured(_) => (met.contact()[0] / along).min(phase.duration),
-            Motion::Sinusoid { cycles, .. } => phase.duration / (4.0 * cycles).max(1.0),
-        };
-        list.push((passage, passage / FEWEST_STEPS_TO_A_MOTION));
-    }
+    list.extend(passage(phase, met).map(|passage| (passage, passage / FEWEST_STEPS_TO_A_MOTION)));
     list
+}
+
+/// How long the contact takes to pass a point of the face, s, where it slides; of cycles, a quarter of one.
+pub fn passage(phase: &Phase, met: &Encounter) -> Option<f64> {
+    let [_, along] = speeds(phase);
+    (along > 0.0).then(|| match phase.motion {
+        Motion::Velocity(_) | Motion::Measured(_) => (met.contact()[0] / along).min(phase.duration),
+        Motion::Sinusoid { cycles, .. } => phase.duration / (4.0 * cycles).max(1.0),
+    })
 }
 
 /// The shortest arm that matters to a motion over the time `motion`, s.

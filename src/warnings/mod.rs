@@ -7,6 +7,7 @@
 mod body;
 mod contact;
 mod encounter;
+mod heat;
 mod loading;
 mod outcome;
 mod profile;
@@ -82,6 +83,8 @@ const BEFORE: &[fn(&Before<'_>) -> Option<Warning>] = &[
     loading::elastic_slip,
     loading::cycles,
     loading::arms,
+    heat::skin,
+    heat::told,
 ];
 
 const AFTER: &[fn(&After<'_>) -> Option<Warning>] = &[
@@ -93,6 +96,7 @@ const AFTER: &[fn(&After<'_>) -> Option<Warning>] = &[
     outcome::between_nodes,
     outcome::stuck_slip,
     outcome::oscillation,
+    heat::reached,
 ];
 
 /// What is doubtful about a scene.

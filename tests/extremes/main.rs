@@ -13,6 +13,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod exact;
+mod heat;
 #[path = "../common/mpi.rs"]
 mod mpi_cases;
 mod sample;
@@ -21,6 +22,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
+use heat::Warm;
 use mpi::topology::SimpleCommunicator;
 use mpi_cases::Case;
 use mpjr::error::{Error, Result};
@@ -33,6 +35,7 @@ const CASES: &[Case] = &[
     Case::new("random_gauss_scenes", &[1], random_gauss_scenes),
     Case::new("random_exact_scenes", &[1], random_exact_scenes),
     Case::new("random_monolithic_scenes", &[1], random_monolithic_scenes),
+    Case::new("random_heat_scenes", &[1], random_heat_scenes),
     Case::new("full_contact_is_that_of_the_closed_form", &[1], exact::full_contact),
     Case::new("units_do_not_matter", &[1], units_do_not_matter),
     Case::new("everything_in_one_step", &[1], everything_in_one_step),
@@ -69,7 +72,17 @@ fn random_monolithic_scenes(world: &SimpleCommunicator, _: &Path) {
     random(world, "monolithic", 70);
 }
 
+/// The same without penetration and with Coulomb's law itself, and with a temperature of the body, whose arms follow it in a part of
+/// them: the balance of heat closes.
+fn random_heat_scenes(world: &SimpleCommunicator, _: &Path) {
+    random(world, "exact,heat", 120);
+}
+
 fn random(world: &SimpleCommunicator, choice: &str, count: usize) {
+    // Draws of its own, so that the scenes are those without heat.
+    let warms = choice.contains("heat");
+    let choice = choice.replace(",heat", "");
+    let mut heat = Draw(2);
     let variable = |name: &str| std::env::var(name).ok();
     let count = variable("MPJR_EXTREMES").and_then(|count| count.parse().ok()).unwrap_or(count);
     let scenes = variable("MPJR_EXTREMES_SCENES");
@@ -78,8 +91,9 @@ fn random(world: &SimpleCommunicator, choice: &str, count: usize) {
     let mut slowest = (0.0, 0);
     let mut table = String::from(Sample::COLUMNS);
     for i in 0..count {
-        let sample = Sample::random(&mut draw, Choice::of(choice));
-        let scene = sample.scene(1.0, 1.0, 1.0);
+        let sample = Sample::random(&mut draw, Choice::of(&choice));
+        let warm = warms.then(|| Warm::random(&mut heat, &sample));
+        let scene = warm.as_ref().map_or_else(|| sample.scene(1.0, 1.0, 1.0), |warm| warm.scene(&sample));
         let begun = Instant::now();
         let outcome = solve(world, &scene);
         let seconds = begun.elapsed().as_secs_f64();
@@ -90,7 +104,10 @@ fn random(world: &SimpleCommunicator, choice: &str, count: usize) {
         match outcome {
             Ok(solution) => {
                 converged += 1;
-                keeps_the_laws(&sample, &solution).unwrap_or_else(|what| panic!("{i}: {what}\n{sample:?}"));
+                let balances = |warm: &Warm| warm.keeps_the_balance(&sample, &solution);
+                keeps_the_laws(&sample, &solution)
+                    .and_then(|()| warm.as_ref().map_or(Ok(()), balances))
+                    .unwrap_or_else(|what| panic!("{i}: {what}\n{sample:?} {warm:?}"));
             }
             Err(error @ Error::Solver(_)) => {
                 let text = error.to_string();

@@ -350,7 +350,9 @@ static HEAT: Keys = table(
             .default("1.0")
             .about("of the heat of friction that enters the body"),
         Key::new("arms", Kind::Flag).default("false").about("whether what the arms dissipate heats, too"),
-        Key::new("coupled", Kind::Flag).default("false").about("not there yet"),
+        Key::new("coupled", Kind::Flag)
+            .default("false")
+            .about("whether the temperature of a cell shifts the times of its arms"),
     ],
 );
 

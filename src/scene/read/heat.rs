@@ -8,12 +8,6 @@ use crate::scene::{Base, Convection, Heat};
 /// Reads it.
 pub(super) fn read(section: &Section) -> Result<Heat> {
     section.only_known()?;
-    let coupled = section.optional_flag("coupled")?.unwrap_or(false);
-    if coupled {
-        let reason = "is not there yet: the temperature does not shift the times of the arms as it rises; give \
-                      coupled = false, and material.temperature for one temperature everywhere and at all times";
-        return Err(section.error("coupled", reason));
-    }
     let base = section.number_or_word("base", INSULATED)?.map_or(Base::Insulated, Base::Held);
     Ok(Heat {
         initial: section.number("initial")?,
@@ -21,7 +15,7 @@ pub(super) fn read(section: &Section) -> Result<Heat> {
         convection: section.optional_section("convection")?.as_ref().map(convection).transpose()?,
         share: section.optional_number("share")?.unwrap_or(1.0),
         arms: section.optional_flag("arms")?.unwrap_or(false),
-        coupled,
+        coupled: section.optional_flag("coupled")?.unwrap_or(false),
     })
 }
 

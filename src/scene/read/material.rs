@@ -191,7 +191,9 @@ impl Given {
                 }
             }
         }
-        if let Some((shift, temperature, factor)) = self.shift {
+        if let Some((shift, temperature, factor)) = self.shift
+            && temperature != shift.reference()
+        {
             self.notes.push(shift_note(shift, temperature, factor));
         }
         Ok(Material {
@@ -205,6 +207,7 @@ impl Given {
             memory: self.memory,
             conductivity: section.optional_number("conductivity")?,
             heat_capacity: section.optional_number("heat_capacity")?,
+            shift: self.shift.map(|(shift, temperature, _)| shift.from(temperature).into()),
             notes: self.notes,
         })
     }

@@ -10,23 +10,20 @@
 use mpi::collective::SystemOperation;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
-use crate::element::conduction::Conduction;
-use crate::element::solid::Split;
 use crate::error::Result;
 use crate::rheology::{Factors, Losses};
 use crate::snapshot::Snapshot;
 use crate::solve::BulkFields;
 use crate::solve::body::{Cells, Solid};
+use crate::solve::kinds::{Kinds, lost};
 use crate::solve::response::Relaxations;
 
 /// The arms of the body at an accepted state, on rank 0.
 pub struct ArmHeat<const D: usize> {
     cells: Cells<D>,
-    /// Per cell, its place in `kinds`: cells that follow their like cost no memory.
-    kind: Vec<usize>,
-    kinds: Vec<(Split<D>, Conduction)>,
+    kinds: Kinds<D>,
     relaxations: Relaxations,
     /// Displacements, and elongations of each arm, of each unknown, m.
     u: Vec<SVector<f64, D>>,
@@ -36,21 +33,10 @@ pub struct ArmHeat<const D: usize> {
 impl<const D: usize> ArmHeat<D> {
     /// At rest.
     pub fn new(solid: &Solid<D>, relaxations: Relaxations) -> Self {
-        let cells = solid.cells();
-        let (mut kind, mut kinds): (Vec<usize>, Vec<(Split<D>, Conduction)>) = (Vec::new(), Vec::new());
-        // The columns of a layer are alike to the last bits: one look back is enough there.
-        let back = if let crate::mesh::Source::Layer(layer) = &solid.source { layer.rows } else { 1 };
-        for cell in 0..cells.mesh.cells.len() {
-            let made = (cells.split(cell), cells.conduction(cell));
-            let like = cell.checked_sub(back).map(|before| kind[before]).filter(|&before| kinds[before] == made);
-            kind.push(like.unwrap_or(kinds.len()));
-            if like.is_none() {
-                kinds.push(made);
-            }
-        }
+        let (cells, kinds) = Kinds::of(solid);
         let field = vec![SVector::zeros(); cells.mesh.unknown_nodes()];
         let elongations = relaxations.times.iter().map(|_| field.clone()).collect();
-        Self { cells, kind, kinds, relaxations, u: field, elongations }
+        Self { cells, kinds, relaxations, u: field, elongations }
     }
 
     /// Takes the arms to the end of a step of length `dt` that ends at the displacements `new`; what each unknown's share of the cells
@@ -61,13 +47,11 @@ impl<const D: usize> ArmHeat<D> {
             times.iter().map(|time| (rule.factors(dt / time), rule.losses(dt / time))).collect();
         let change: Vec<SVector<f64, D>> = new.iter().zip(&self.u).map(|(new, old)| new - old).collect();
         let mut heat = vec![0.0; new.len()];
-        for cell in 0..self.kind.len() {
+        for cell in 0..self.cells.mesh.cells.len() {
             let unknowns = self.cells.mesh.cell_unknowns(cell);
             let lost = self.lost(cell, unknowns.corners(), &change, &steps);
-            let capacity = &self.kinds[self.kind[cell]].1.capacity;
-            let whole: f64 = capacity.iter().sum();
-            for (&unknown, share) in unknowns.corners().iter().zip(capacity) {
-                heat[unknown as usize] += lost * share / whole;
+            for (&unknown, share) in unknowns.corners().iter().zip(self.kinds.shares(cell)) {
+                heat[unknown as usize] += lost * share;
             }
         }
         for (elongation, (Factors { decay, gain }, _)) in self.elongations.iter_mut().zip(&steps) {
@@ -80,7 +64,7 @@ impl<const D: usize> ArmHeat<D> {
     /// What a cell dissipated, J/m.
     fn lost(&self, cell: usize, corners: &[u32], change: &[SVector<f64, D>], steps: &[(Factors, Losses)]) -> f64 {
         let region = self.cells.region(cell);
-        let split = &self.kinds[self.kind[cell]].0;
+        let split = self.kinds.split(cell);
         let of = |field: &[SVector<f64, D>]| -> Vec<SVector<f64, D>> {
             corners.iter().map(|&at| field[at as usize]).collect()
         };
@@ -89,20 +73,12 @@ impl<const D: usize> ArmHeat<D> {
             (region.moduli.shear, region.shear_part, &split.deviatoric),
             (region.moduli.bulk, region.bulk_part, &split.volumetric),
         ];
-        let mut lost = 0.0;
-        for (modulus, part, stiffness) in parts {
-            let Some(series) = &self.relaxations.series[part] else { continue };
-            let fresh = form(stiffness, &du, &du);
-            for ((weight, elongation), (_, losses)) in series.weights.iter().zip(&self.elongations).zip(steps) {
-                if *weight > 0.0 {
-                    let z = of(elongation);
-                    let (held, mixed) = (form(stiffness, &z, &z), form(stiffness, &z, &du));
-                    let sum = losses.held * held + 2.0 * losses.mixed * mixed + losses.fresh * fresh;
-                    lost += modulus * weight * sum;
-                }
-            }
-        }
-        lost
+        let elongations = || self.elongations.iter().map(|elongation| of(elongation));
+        let on = |(modulus, part, stiffness): (f64, usize, &Vec<_>)| match &self.relaxations.series[part] {
+            Some(series) => modulus * lost((series, stiffness), elongations(), &du, steps),
+            None => 0.0,
+        };
+        parts.map(on).iter().sum()
     }
 
     /// Adds the state to a snapshot.
@@ -125,14 +101,6 @@ impl<const D: usize> ArmHeat<D> {
         }
         Ok(())
     }
-}
-
-/// a'K b
-fn form<const D: usize>(blocks: &[SMatrix<f64, D, D>], a: &[SVector<f64, D>], b: &[SVector<f64, D>]) -> f64 {
-    let row = |(a, row): (&SVector<f64, D>, &[SMatrix<f64, D, D>])| {
-        a.dot(&row.iter().zip(b).map(|(block, b)| block * b).sum::<SVector<f64, D>>())
-    };
-    a.iter().zip(blocks.chunks_exact(b.len())).map(row).sum()
 }
 
 /// The displacement of each unknown, m, on rank 0, of fields that the ranks have of their own nodes; `unknown` is that of each node of

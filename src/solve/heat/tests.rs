@@ -142,6 +142,7 @@ fn heat_is_neither_lost_nor_made() {
             convection: Some(super::Convection { coefficient: 40.0, temperature: 290.0 }),
             share: 1.0,
             arms: None,
+            coupled: false,
         };
         let mut energy = HeatEnergy::default();
         for step in 0..40 {

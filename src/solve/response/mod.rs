@@ -4,6 +4,7 @@
 //! and what the contact forces add through a compliance: u = u_free + C f/c.
 
 mod compliance;
+mod coupled;
 mod following;
 mod interior;
 mod kernel;
@@ -14,13 +15,14 @@ mod transform;
 mod travelling;
 mod waves;
 
-use super::{BulkFields, Work};
+use super::{BulkFields, Tempered, Work};
 use crate::energy::BodyEnergy;
 use crate::error::Result;
 use crate::petsc::{Gather, Step, Vector};
 use crate::snapshot::{NaturalOrder, Snapshot};
 
 pub use compliance::Compliance;
+pub use coupled::Coupled;
 pub use following::{Following, Relaxation};
 pub use interior::Interior;
 pub use kernel::Kernel;
@@ -49,6 +51,10 @@ pub trait Response<const D: usize> {
     fn energy(&self) -> Option<BodyEnergy>;
     /// Takes memory and account to the end of an accepted step that ends at `u` under the contact forces `forces` (on rank 0).
     fn commit(&mut self, step: Step, u: &Vector, forces: &[f64]) -> Result<()>;
+    /// The body, on the rank that has it, where its arms follow the temperature.
+    fn tempered(&mut self) -> Option<&mut dyn Tempered> {
+        None
+    }
     /// Adds the memory to a snapshot; `order` is that of the face.
     fn save(&mut self, order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()>;
     /// Takes the memory at the accepted state `u` from a snapshot that is whole on every rank.

@@ -13,7 +13,7 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
 
-use super::super::{BulkFields, Work};
+use super::super::{BulkFields, Tempered, Work};
 use super::Response;
 use super::compliance::Compliance;
 use crate::energy::BodyEnergy;
@@ -38,6 +38,10 @@ pub trait Inside<const D: usize> {
     fn energy(&self) -> Option<BodyEnergy>;
     /// Takes the body to the end of the step that was prepared, under the contact forces `forces` on the face nodes, N/m.
     fn commit(&mut self, step: Step, forces: &[f64]) -> Result<()>;
+    /// Itself, where its arms follow the temperature.
+    fn tempered(&mut self) -> Option<&mut dyn Tempered> {
+        None
+    }
     /// Adds the accepted state to a snapshot.
     fn save(&self, snapshot: &mut Snapshot) -> Result<()>;
     /// Takes the accepted state from a snapshot.
@@ -145,6 +149,10 @@ impl<const D: usize> Response<D> for Remembering<D> {
         agree(&self.comm, mine)?;
         self.share_energy();
         Ok(())
+    }
+
+    fn tempered(&mut self) -> Option<&mut dyn Tempered> {
+        self.inside.as_mut().and_then(|inside| inside.tempered())
     }
 
     fn save(&mut self, _order: &mut NaturalOrder, snapshot: &mut Snapshot) -> Result<()> {
