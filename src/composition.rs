@@ -7,6 +7,7 @@ mod map;
 mod outline;
 mod pressed;
 mod profile;
+mod share;
 mod steady;
 mod surface;
 
@@ -28,7 +29,7 @@ use crate::friction::{Coefficient, Coulomb, CoulombTanh, ElasticSlip, Law, Stren
 use crate::interface::{Interface, Laws};
 use crate::loading::{self, Adaptive, DIRECTIONS, Moment, Motion, Mount, Phase, Placement, Track};
 use crate::mesh::Source;
-use crate::parallel::{agree, share_numbers};
+use crate::parallel::{Team, agree, share_numbers};
 use crate::petsc::{Integrator, Linear, Matrix, Search, Settings, Vector};
 use crate::profile::{Extruded, Profile, Surface};
 use crate::scene::{self, Scene, Stepping, When};
@@ -46,6 +47,7 @@ pub use inputs::inputs;
 pub use outline::{Outline, Stretch, outline};
 pub use pressed::PressedEnd;
 pub use profile::{Elevations, Finest, Shape, elevations, measured, reach, seam_doubt, shape};
+pub use share::shares_face;
 pub use steady::{heading, last_velocity, steady};
 
 /// A scene made ready to run.
@@ -76,11 +78,15 @@ impl Compliances {
     fn get<const D: usize>(
         &self,
         solid: &Solid<D>,
+        team: &Team,
         compute: impl FnOnce() -> Result<Compliance<D>>,
     ) -> Result<Rc<Compliance<D>>> {
         let mut last = self.last.borrow_mut();
         let known = last.as_ref().and_then(|last| last.downcast_ref::<(Solid<D>, Rc<Compliance<D>>)>());
-        if let Some((_, compliance)) = known.filter(|(other, _)| other == solid) {
+        let known = known.filter(|(other, known)| other == solid && known.is_parted() == team.is_parted());
+        // A scene in between may have been one rank's alone.
+        let on_all = team.all_say(known.is_some());
+        if let Some((_, compliance)) = known.filter(|_| on_all) {
             return Ok(compliance.clone());
         }
         // Frees the old one first.
@@ -169,8 +175,9 @@ fn assembled<const D: usize>(
     let (penalty, wear) = (body::penalty(scene, &source), scene.wear.map(wearing));
     let laws = Laws { profile: Box::new(surface), penalty, friction, wear };
     let mut interface = Interface::new(source.face(), laws, quadrature(scene.contact.quadrature));
-    let clearance = clearance(scene, &mut interface)?;
     let solid = Solid { source, dilatation: body::dilatation(scene), regions: materials.regions.clone() };
+    interface = interface.among(&share::team(comm, scene));
+    let clearance = clearance(scene, &mut interface)?;
     let heated = scene.heat.as_ref().map(|heat| (heat_of(scene, heat, &materials), solid.clone()));
     let mut problem = match form(scene) {
         Form::Monolithic => monolithic(comm, scene, (solid, materials), interface)?,
@@ -262,8 +269,9 @@ fn following<const D: usize>(
     compliances: &Compliances,
 ) -> Result<Strategy> {
     let u = face_vector(comm, &interface)?;
-    let get = || compliances.get(&solid, || compliance(&solid)).map(Some);
-    let compliance = agree(comm, if comm.rank() == 0 { get() } else { Ok(None) })?;
+    let team = interface.team();
+    let get = || compliances.get(&solid, team, || compliance(&solid, team)).map(Some);
+    let compliance = agree(comm, if comm.rank() == 0 || team.is_parted() { get() } else { Ok(None) })?;
     let Materials { series, times, memory, .. } = materials;
     let relaxation = match series.into_iter().next().flatten() {
         Some(series) => Some(Relaxation { arms: Arms::new(times, memory, &u)?, series }),
@@ -282,8 +290,13 @@ fn remembering<const D: usize>(
     (solid, materials): (Solid<D>, Materials),
     interface: Interface<D>,
 ) -> Result<Strategy> {
-    let make = || if scene.is_coupled() { coupled(scene, &solid, materials) } else { inside(&solid, materials) };
-    let inside = if comm.rank() == 0 { make().map(Some) } else { Ok(None) };
+    let team = interface.team();
+    let here = comm.rank() == 0 || team.is_parted();
+    let make = || match scene.is_coupled() {
+        true => coupled(scene, &solid, materials),
+        false => inside(&solid, materials, team),
+    };
+    let inside = if here { make().map(Some) } else { Ok(None) };
     let backing = Remembering::new(comm, agree(comm, inside)?);
     let u = face_vector(comm, &interface)?;
     condensed(comm, scene, (u, solid.source.height()), (interface, backing))
@@ -297,7 +310,7 @@ fn condensed<const D: usize, R: Response<D> + 'static>(
 ) -> Result<Strategy> {
     // Where each cell has times of its own a period has no waves.
     let periodic = scene.layer().is_some_and(scene::Layer::is_periodic) && !scene.is_coupled();
-    let components = D * interface.face().count();
+    let components = D * interface.nodes_everywhere();
     let mounts = mounts::<D>(scene);
     let freedom = freedom::<D>(scene, height);
     let points = interface.points();
@@ -316,9 +329,9 @@ fn condensed<const D: usize, R: Response<D> + 'static>(
         true => Linear::OwnIterative(1e-2),
         false => Linear::Own,
     };
-    // The tractions of the points, on rank 0.
+    // The tractions of the points, on the ranks that have them; the place of the indenter on the first.
     let points = if u.local_len() > 0 { points.count() } else { 0 };
-    let last = if points > 0 { freedom.unknowns() } else { 0 };
+    let last = if comm.rank() == 0 { freedom.unknowns() } else { 0 };
     let tractions = Vector::new(comm, D * points + last)?;
     let mut tangent = Matrix::shell(comm, tractions.local_len())?;
     let settings = Settings { linear, max_newton: MAX_NEWTON, search: Search::Own };
@@ -328,23 +341,24 @@ fn condensed<const D: usize, R: Response<D> + 'static>(
     Ok(Strategy { strategy, tangent, u: tractions, integrator })
 }
 
-/// The components of each face node, on rank 0.
+/// The components of each face node, on rank 0 or on the rank that has it.
 fn face_vector<const D: usize>(comm: &SimpleCommunicator, interface: &Interface<D>) -> Result<Vector> {
-    Vector::new(comm, if comm.rank() == 0 { D * interface.face().count() } else { 0 })
+    let here = comm.rank() == 0 || interface.team().is_parted();
+    Vector::new(comm, if here { D * interface.face().count() } else { 0 })
 }
 
-/// The compliance of the face, by this rank alone.
-fn compliance<const D: usize>(solid: &Solid<D>) -> Result<Compliance<D>> {
+/// The compliance of the face, by the ranks that share it.
+fn compliance<const D: usize>(solid: &Solid<D>, team: &Rc<Team>) -> Result<Compliance<D>> {
     match PeriodicColumn::new(solid) {
-        Some(column) => column.compliance(),
+        Some(column) => column.compliance(team),
         None => Compliance::by_schur_complement(&Body::new(SimpleCommunicator::self_comm(), solid)?),
     }
 }
 
-/// The whole body with its memory, on this rank alone.
-fn inside<const D: usize>(solid: &Solid<D>, materials: Materials) -> Result<Box<dyn Inside<D>>> {
+/// The whole body with its memory, on this rank alone, or its waves on the ranks that share them.
+fn inside<const D: usize>(solid: &Solid<D>, materials: Materials, team: &Rc<Team>) -> Result<Box<dyn Inside<D>>> {
     if let Some(column) = PeriodicColumn::new(solid) {
-        return Ok(Box::new(Layered::new(solid.clone(), &column, materials.relaxations())));
+        return Ok(Box::new(Layered::new(solid.clone(), &column, materials.relaxations(), team)));
     }
     let body = Body::new(SimpleCommunicator::self_comm(), solid)?;
     let bulk = materials.bulk(&body, &body.vector()?)?;
@@ -431,7 +445,7 @@ fn clearance<const D: usize>(scene: &Scene, interface: &mut Interface<D>) -> Res
     interface.place(Placement::default())?;
     let points = interface.points().all().iter().enumerate();
     let gaps = points.map(|(i, point)| interface.clearance(i, 0.0) * point.normal[D - 1]);
-    Ok(gaps.fold(f64::INFINITY, f64::min))
+    Ok(interface.team().least(gaps.fold(f64::INFINITY, f64::min)))
 }
 
 /// The greatest penetration of the undeformed face that a history asks for, m, by approaches, by forces or on a mount; only for scenes with adaptive

@@ -4,7 +4,8 @@
 //! regularised friction law: [`Interface::residual`]. Where tractions are, [`crate::solve`] meets the laws, exact ones too.
 //! Either gives a [`State`] of each point, from which totals, fields and energy are had.
 //!
-//! Every rank holds the whole face (it is one dimension smaller than the body) and all its states.
+//! Every rank holds the whole face (it is one dimension smaller than the body) and all its states, unless the face is parted among the
+//! ranks of a team: [`Interface::among`]. Then each has its own lines, and only totals are reduced.
 
 mod displaced;
 mod exchange;
@@ -13,6 +14,8 @@ mod points;
 mod state;
 mod worn;
 
+use std::rc::Rc;
+
 use nalgebra::{SVector, Vector2};
 
 use crate::element::mpjr::Quadrature;
@@ -20,6 +23,7 @@ use crate::error::{Error, Result};
 use crate::friction::{Circumstances, Lasting, Law};
 use crate::loading::{DIRECTIONS, Placement};
 use crate::mesh;
+use crate::parallel::Team;
 use crate::profile::{Height, Surface};
 use crate::snapshot::Snapshot;
 use crate::wear::{Wear, Worn};
@@ -29,6 +33,9 @@ pub use exchange::{Exchange, Rub};
 pub use points::{Point, Points};
 pub use state::State;
 pub use worn::WornFields;
+
+/// How many lines beyond its own a rank looks at for the oscillation of tractions.
+const BEYOND: usize = 3;
 
 /// The laws of the contact.
 pub struct Laws {
@@ -45,6 +52,8 @@ pub struct Laws {
 /// The MPJR interface elements of a contact face.
 pub struct Interface<const D: usize> {
     face: mesh::Face<D>,
+    /// Of a parted face with three lines more, which are another rank's.
+    beyond: Option<mesh::Face<D>>,
     laws: Laws,
     points: Points<D>,
     /// See [`Self::pairs`].
@@ -100,11 +109,13 @@ pub struct Fields {
     pub worn: Option<WornFields>,
 }
 
-/// What is asked of a contact face at its accepted state, whatever the dimension.
+/// What is asked of a contact face at its accepted state, whatever the dimension. Lists are of this rank's nodes.
 pub trait Face {
+    /// The ranks that share it.
+    fn team(&self) -> &Team;
     /// Where the indenter is.
     fn placement(&self) -> Placement;
-    /// The integrals over the face.
+    /// The integrals over the whole face. Collective where it is parted.
     ///
     /// # Errors
     /// A domain error where the profile is not known.
@@ -118,6 +129,10 @@ pub trait Face {
 }
 
 impl<const D: usize> Face for Interface<D> {
+    fn team(&self) -> &Team {
+        Self::team(self)
+    }
+
     fn placement(&self) -> Placement {
         self.place
     }
@@ -153,10 +168,30 @@ impl<const D: usize> Interface<D> {
         let accepted = vec![State::default(); points.count()];
         let worn = laws.worn(face.grid.as_ref());
         let (place, temperatures) = (Placement::default(), Vec::new());
-        Self { face, laws, points, pairs, accepted, place, worn, tangential_laws: 0, temperatures }
+        Self { face, beyond: None, laws, points, pairs, accepted, place, worn, tangential_laws: 0, temperatures }
     }
 
-    /// The face.
+    /// What this rank has of it among the ranks of a team; of a face at rest whose points are the nodes of a periodic grid.
+    pub fn among(self, team: &Rc<Team>) -> Self {
+        let Some(lines) = team.lines() else { return self };
+        let points = self.points.among(team.clone());
+        let face = self.face.of_lines(lines.clone());
+        let beyond = Some(self.face.of_lines(lines.start..lines.end + BEYOND));
+        let accepted = vec![State::default(); points.count()];
+        Self { face, beyond, points, accepted, ..self }
+    }
+
+    /// The ranks that share the face.
+    pub fn team(&self) -> &Rc<Team> {
+        self.points.team()
+    }
+
+    /// How many nodes it has on all ranks.
+    pub fn nodes_everywhere(&self) -> usize {
+        self.team().count(self.face.count())
+    }
+
+    /// The face, of this rank.
     pub fn face(&self) -> &mesh::Face<D> {
         &self.face
     }
@@ -181,8 +216,9 @@ impl<const D: usize> Interface<D> {
         self.place
     }
 
-    /// Tells the laws the temperatures of the nodes, K.
+    /// Tells the laws the temperatures of all nodes, K.
     pub fn warm(&mut self, nodes: &[f64]) {
+        let nodes = self.team().own(nodes);
         let at = |i: usize| self.points.shares(i).iter().map(|(node, share)| share * nodes[*node]).sum();
         self.temperatures = (0..self.points.count()).map(at).collect();
     }
@@ -248,13 +284,13 @@ impl<const D: usize> Interface<D> {
         self.points.heights()[i].height - approach - self.points.all()[i].place[D - 1]
     }
 
-    /// Takes the accepted state to the end of a step.
+    /// Takes the accepted state to the end of a step. Collective.
     ///
     /// # Errors
     /// As for [`Self::place`]; where the coefficient of friction is none at a point in contact.
     pub fn commit(&mut self, placement: Placement, states: Vec<State<D>>) -> Result<()> {
         self.place(placement)?;
-        self.check_friction(placement.dt, &states)?;
+        self.team().agree(self.check_friction(placement.dt, &states))?;
         self.wear_off(placement, &states);
         (self.accepted, self.place) = (states, Placement { dt: 0.0, supports: [None; DIRECTIONS], ..placement });
         Ok(())
@@ -273,12 +309,21 @@ impl<const D: usize> Interface<D> {
         touched.find_map(fault).map_or(Ok(()), |fault| Err(Error::Solver(fault)))
     }
 
-    /// The integrals over the face at the accepted state.
+    /// The integrals over the face at the accepted state. Collective.
     ///
     /// # Errors
     /// As for [`Self::place`].
     pub fn totals(&mut self) -> Result<Totals> {
         self.place(self.place)?;
+        let Fields { pressure, shear, .. } = self.fields(1.0);
+        let traction =
+            |(q, p): (Vector2<f64>, f64)| SVector::<f64, D>::from_fn(|i, _| if i + 1 < D { q[i] } else { p });
+        let tractions: Vec<_> = shear.into_iter().zip(pressure).map(traction).collect();
+        let around = self.around(&tractions);
+        let beside = |other: usize| match other.checked_sub(self.accepted.len()) {
+            None => self.accepted[other].pressure > 0.0,
+            Some(other) => around[other][D - 1] > 0.0,
+        };
         let mut totals = Totals::default();
         let (mut length, mut contact, mut stick) = (0.0, 0.0, 0.0);
         for (i, (point, state)) in self.points.all().iter().zip(&self.accepted).enumerate() {
@@ -290,26 +335,59 @@ impl<const D: usize> Interface<D> {
             contact += point.weight;
             totals.normal_force -= point.weight * state.on_layer(&point.normal)[D - 1];
             totals.tangential_force += along_the_plane(&state.shear) * point.weight;
-            totals.hysteretic_force += self.gradient(i) * (point.weight * point.normal[D - 1] * state.pressure);
+            totals.hysteretic_force +=
+                self.gradient(i, &beside) * (point.weight * point.normal[D - 1] * state.pressure);
             if state.sticks {
                 stick += point.weight;
                 totals.stuck_slip = totals.stuck_slip.max(state.stuck.norm());
             }
         }
-        totals.worn_volume = self.worn_volume();
-        totals.contact_fraction = contact / length;
-        totals.stick_fraction = if contact > 0.0 { stick / contact } else { 0.0 };
-        let Fields { pressure, shear, .. } = self.fields(1.0);
-        let traction =
-            |(q, p): (Vector2<f64>, f64)| SVector::<f64, D>::from_fn(|i, _| if i + 1 < D { q[i] } else { p });
-        let tractions: Vec<_> = shear.into_iter().zip(pressure).map(traction).collect();
-        totals.traction_oscillation = oscillation::oscillation(&self.face, &tractions);
-        Ok(totals)
+        let (team, q, hysteretic) = (self.team(), totals.tangential_force, totals.hysteretic_force);
+        let mine = [totals.normal_force, q.x, q.y, hysteretic.x, hysteretic.y, length, contact, stick];
+        let [normal_force, q_x, q_y, hysteretic_x, hysteretic_y, length, contact, stick] = team.sum(mine);
+        let [max_penetration, stuck_slip] = team.most([totals.max_penetration, totals.stuck_slip]);
+        Ok(Totals {
+            normal_force,
+            tangential_force: Vector2::new(q_x, q_y),
+            hysteretic_force: Vector2::new(hysteretic_x, hysteretic_y),
+            contact_fraction: contact / length,
+            stick_fraction: if contact > 0.0 { stick / contact } else { 0.0 },
+            max_penetration,
+            stuck_slip,
+            worn_volume: self.worn_volume(),
+            traction_oscillation: self.oscillation(tractions, &around),
+        })
+    }
+
+    /// The tractions of the line before this rank's, and of those after it; nothing where the face is not parted. Collective.
+    fn around(&self, tractions: &[SVector<f64, D>]) -> Vec<SVector<f64, D>> {
+        let team = self.team();
+        if !team.is_parted() {
+            return Vec::new();
+        }
+        let lines = team.lines_of(team.ranks()[0] - 1).end;
+        let wanted = |rank: usize| {
+            let std::ops::Range { start, end } = team.lines_of(rank);
+            std::iter::once(start + lines - 1).chain(end..end + BEYOND).map(|line| line % lines).collect()
+        };
+        let flat: Vec<f64> = tractions.iter().flatten().copied().collect();
+        team.fetched(&flat, wanted).chunks_exact(D).map(SVector::from_column_slice).collect()
+    }
+
+    /// See [`Totals::traction_oscillation`]. Collective.
+    fn oscillation(&self, mut tractions: Vec<SVector<f64, D>>, around: &[SVector<f64, D>]) -> f64 {
+        let count = tractions.len();
+        let Some(beyond) = &self.beyond else {
+            return oscillation::oscillation((&self.face, count), &tractions, self.team());
+        };
+        // But for the line before.
+        tractions.extend_from_slice(&around[around.len() / (1 + BEYOND)..]);
+        oscillation::oscillation((beyond, count), &tractions, self.team())
     }
 
     /// The gradient of h over a point of the contact: at a kink of the profile that of the side which is in contact, of both their
-    /// mean.
-    fn gradient(&self, i: usize) -> Vector2<f64> {
+    /// mean. `touches` says whether another point is in contact.
+    fn gradient(&self, i: usize, touches: &dyn Fn(usize) -> bool) -> Vector2<f64> {
         /// How far beside the point the sides are looked at, over the size of what it stands for.
         const BESIDE: f64 = 1e-6;
         /// Slopes that differ by less, over the larger, are one.
@@ -317,7 +395,7 @@ impl<const D: usize> Interface<D> {
         let point = &self.points.all()[i];
         let (place, size) = (point.along() - self.place.sliding, point.weight.powf(1.0 / (D - 1) as f64));
         let here = self.points.heights()[i].gradient;
-        let touches = |other: Option<usize>| other.is_some_and(|other| self.accepted[other].pressure > 0.0);
+        let touches = |other: Option<usize>| other.is_some_and(touches);
         let along = |axis: usize| {
             let side = |steps: f64| {
                 let beside = place + Vector2::ith(axis, steps * BESIDE * size);
@@ -363,11 +441,11 @@ impl<const D: usize> Interface<D> {
         fields
     }
 
-    /// Adds the accepted state to a snapshot.
+    /// Adds the accepted state to a snapshot. Collective.
     pub fn save(&self, snapshot: &mut Snapshot) {
         let mut list = Vec::with_capacity(State::<D>::NUMBERS * self.accepted.len());
         self.accepted.iter().for_each(|state| state.write(&mut list));
-        snapshot.put("face-states", list);
+        snapshot.put("face-states", self.team().collected(list));
         let Placement { approach, sliding, sliding_rate, approach_rate, far, .. } = self.place;
         snapshot.put("face", vec![approach, sliding.x, sliding.y, sliding_rate.x, sliding_rate.y, approach_rate]);
         snapshot.put("mounts", far.to_vec());
@@ -377,7 +455,7 @@ impl<const D: usize> Interface<D> {
     /// Takes the accepted state from a snapshot.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
         let mut list = vec![0.0; State::<D>::NUMBERS * self.accepted.len()];
-        snapshot.fill("face-states", &mut list)?;
+        snapshot.fill_own("face-states", self.team(), &mut list)?;
         self.accepted = list.chunks_exact(State::<D>::NUMBERS).map(State::read).collect();
         let [approach, x, y, v_x, v_y, approach_rate] = snapshot.numbers("face")?;
         let (sliding, sliding_rate) = (Vector2::new(x, y), Vector2::new(v_x, v_y));

@@ -5,7 +5,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use crate::error::{Error, Result};
-use crate::parallel::broadcast;
+use crate::parallel::{Team, broadcast};
 use crate::petsc::{Gather, Vector};
 
 /// Everything that the rest of a run depends on. Rank 0's is whole; the others' lack what only rank 0 gathers.
@@ -37,11 +37,24 @@ impl Snapshot {
 
     /// The list of this name, which must be as long as `target`, copied there.
     pub fn fill(&self, name: &str, target: &mut [f64]) -> Result<()> {
+        self.fill_part(name, 0, target.len(), target)
+    }
+
+    /// The part of the list of this name that begins at `first` and is as long as `target`, copied there; the list must have `count` numbers.
+    pub fn fill_part(&self, name: &str, first: usize, count: usize, target: &mut [f64]) -> Result<()> {
         let values = self.get(name)?;
-        if values.len() != target.len() {
+        let part = values.get(first..first + target.len()).filter(|_| values.len() == count);
+        target.copy_from_slice(part.ok_or_else(|| lacking(name))?);
+        Ok(())
+    }
+
+    /// This rank's part of the list of this name, which must be as long as `target`, copied there.
+    pub fn fill_own(&self, name: &str, team: &Team, target: &mut [f64]) -> Result<()> {
+        let part = team.own(self.get(name)?);
+        if part.len() != target.len() {
             return Err(lacking(name));
         }
-        target.copy_from_slice(values);
+        target.copy_from_slice(part);
         Ok(())
     }
 
@@ -97,11 +110,12 @@ impl NaturalOrder {
         Ok(Self { gather: Gather::new(layout, wanted)?, collected: wanted.len(), places })
     }
 
-    /// For vectors that rank 0 holds whole, in their own order.
-    pub fn on_first_rank(layout: &Vector) -> Result<Self> {
-        let collected = layout.local_len();
+    /// For vectors whose own order it is, of `count` entries of which this rank's begin at `first`; `collects` on rank 0.
+    pub fn as_it_is(layout: &Vector, (first, count): (usize, usize), collects: bool) -> Result<Self> {
+        let collected = if collects { count } else { 0 };
         let entries: Vec<i32> = (0..collected as i32).collect();
-        Ok(Self { gather: Gather::new(layout, &entries)?, collected, places: (0..collected).collect() })
+        let places = (first..first + layout.local_len()).collect();
+        Ok(Self { gather: Gather::new(layout, &entries)?, collected, places })
     }
 
     /// Adds the vector to the snapshot. Collective.

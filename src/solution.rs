@@ -82,7 +82,7 @@ fn heat_row(problem: &dyn TransientProblem) -> HeatRow {
     problem.thermal().map(of).unwrap_or_default()
 }
 
-/// The row of the history that says where a run is.
+/// The row of the history that says where a run is. Collective.
 pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
     let heat = heat_row(report.problem);
     let energy = report.problem.energy().unwrap_or_default();
@@ -118,8 +118,17 @@ pub fn row(report: &mut Report<'_>) -> Result<HistoryRow> {
     row.not_finite().map_or(Ok(row), |name| Err(not_finite("history", name, report.time)))
 }
 
-/// The contact face as it is.
-pub fn frame(report: &mut Report<'_>) -> Result<InterfaceFrame> {
+/// Who is to have the contact face whole, where each rank has a part of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Whole {
+    /// The first rank; the others have nothing then.
+    OnFirst,
+    /// All.
+    OnAll,
+}
+
+/// The contact face as it is. Collective.
+pub fn frame(report: &mut Report<'_>, whole: Whole) -> Result<InterfaceFrame> {
     let thermal = report.problem.thermal();
     let [temperature, heat_flux] =
         thermal.map_or_else(Default::default, |thermal| [thermal.face.clone(), thermal.flux.clone()]);
@@ -130,19 +139,24 @@ pub fn frame(report: &mut Report<'_>) -> Result<InterfaceFrame> {
         vectors.iter().flat_map(|vector| vector.iter().take(axes - 1)).copied().collect()
     };
     let component = |i: usize| contact.displacement.iter().skip(i).step_by(axes).copied().collect();
+    let team = contact.team();
+    let whole = |list: Vec<f64>| match whole {
+        Whole::OnFirst => team.collected(list),
+        Whole::OnAll => team.shared(list),
+    };
     let WornFields { depth, profile } = fields.worn.unwrap_or_default();
     let [displacement_x, displacement_z] = if axes == 2 { [component(0), component(1)] } else { Default::default() };
     let frame = InterfaceFrame {
         time: report.time,
-        shear: along(&fields.shear),
-        slip_rate: along(&fields.slip_rate),
-        pressure: fields.pressure,
-        gap: fields.gap,
+        shear: whole(along(&fields.shear)),
+        slip_rate: whole(along(&fields.slip_rate)),
+        pressure: whole(fields.pressure),
+        gap: whole(fields.gap),
         displacement_x,
         displacement_z,
-        displacement: if axes == 3 { contact.displacement.to_vec() } else { Vec::new() },
-        worn_depth: depth,
-        worn_profile: profile.unwrap_or_default(),
+        displacement: whole(if axes == 3 { contact.displacement.to_vec() } else { Vec::new() }),
+        worn_depth: whole(depth),
+        worn_profile: whole(profile.unwrap_or_default()),
         temperature,
         heat_flux,
     };
@@ -187,7 +201,7 @@ impl Observer for Collected {
     fn observe(&mut self, mut report: Report<'_>) -> Result<()> {
         self.history.push(row(&mut report)?);
         if report.phase_end {
-            self.ends.push(frame(&mut report)?);
+            self.ends.push(frame(&mut report, Whole::OnAll)?);
         }
         if report.bulk_output {
             self.bulk.push(bulk(&mut report)?);

@@ -16,7 +16,7 @@ use mpjr::interface::State;
 use mpjr::loading::Support;
 use mpjr::profile::Height;
 use mpjr::solve::traction::{
-    Border, Factor, Held, Laws, Moduli, Operator, Outcome, Site, against, product, settle, shift,
+    Border, Factor, Held, Laws, Moduli, Operator, Outcome, Site, Sites, against, product, settle, shift,
 };
 use mpjr::wear::{Part, Wear};
 use nalgebra::{DMatrix, SMatrix, SVector, Vector2};
@@ -48,7 +48,7 @@ impl Draw {
 
 /// A few points before a body of random compliance: some stick, some slip, some are open.
 struct Face<const D: usize> {
-    sites: Vec<Site<D>>,
+    sites: Sites<D>,
     compliance: DMatrix<f64>,
     free: Vec<SVector<f64, D>>,
     tractions: Vec<SVector<f64, D>>,
@@ -70,7 +70,7 @@ impl<const D: usize> Face<D> {
             moduli: Moduli { normal: 0.3, tangential: Some(0.4) },
             lengths: [1.0; 2],
         };
-        let sites = (0..count).map(site).collect();
+        let sites = (0..count).map(site).collect::<Vec<_>>().into();
         let mut vectors = || (0..count).map(|_| draw.vector()).collect::<Vec<_>>();
         Self { sites, compliance, free: vectors(), tractions: vectors() }
     }
@@ -226,13 +226,12 @@ fn solution<const D: usize>() {
         let mut solved = Vec::new();
         for rho in [0.05, 0.4] {
             let mut face = Face::<D>::new(9, &mut Draw(11));
-            for site in &mut face.sites {
-                site.moduli = Moduli { normal: rho, tangential: Some(1.3 * rho) };
-            }
+            let moduli = Moduli { normal: rho, tangential: Some(1.3 * rho) };
+            face.sites = face.sites.iter().map(|site| Site { moduli, ..site.clone() }).collect::<Vec<_>>().into();
             let from = face.outcome(vec![SVector::zeros(); 9], laws);
             let operator: Operator<'_, D> = (&|j, rows| face.column(j, rows), &|t| Ok(face.moves(t)));
             let end = settle(&face.sites, from, laws, operator, 60).unwrap();
-            assert!(end.norm(&face.sites) <= end.noise(&face.sites), "{laws:?} {rho}: {:e}", end.norm(&face.sites));
+            assert!(end.norm() <= end.noise(), "{laws:?} {rho}: {:e}", end.norm());
             for ((site, answer), motion) in face.sites.iter().zip(&end.answers).zip(&end.motions) {
                 let state = answer.state(site, motion, laws, &State::default());
                 let at = site.circumstances(state.pressure, laws);

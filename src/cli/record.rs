@@ -15,7 +15,7 @@ use crate::parallel::{agree, any};
 use crate::petsc::Vector;
 use crate::scene::Scene;
 use crate::snapshot::Snapshot;
-use crate::solution;
+use crate::solution::{self, Whole};
 use crate::solve::{Counts, Observer, Report, TransientProblem};
 use crate::warnings::{Doubts, Warning};
 
@@ -133,13 +133,20 @@ impl<'a> Recording<'a> {
 
     /// The step's row of the history, and its interface profile where one is due.
     fn record(&mut self, report: &mut Report<'_>) -> Result<()> {
-        let Some(recorder) = &self.recorder else { return Ok(()) };
-        self.last = solution::row(report)?;
-        recorder.history(self.last)?;
-        let due = report.planned && self.planned_steps.checked_rem(self.interface_every) == Some(0);
-        if due || report.phase_end {
-            recorder.interface(solution::frame(report)?)?;
+        // Where each rank has a part of the face all have to say what they have of it.
+        let asked = self.recorder.is_some() || report.problem.contact()?.team().is_parted();
+        if !asked {
+            return Ok(());
         }
+        self.last = solution::row(report)?;
+        let due = report.planned && self.planned_steps.checked_rem(self.interface_every) == Some(0);
+        let frame = match due || report.phase_end {
+            true => Some(solution::frame(report, Whole::OnFirst)?),
+            false => None,
+        };
+        let Some(recorder) = &self.recorder else { return Ok(()) };
+        recorder.history(self.last)?;
+        frame.map_or(Ok(()), |frame| recorder.interface(frame))?;
         self.progress.show(&Stage {
             done: self.scene.steps_until(report.phase, report.time),
             phase: &self.scene.phases[report.phase].name,

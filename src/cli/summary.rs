@@ -295,7 +295,8 @@ pub fn outcome(scene: &Scene, done: &Done) -> String {
         duration(&linear),
         duration(&counts.output)
     );
-    if let Some(why) = alone(scene, *unknowns).filter(|_| *ranks > 1) {
+    let shared = composition::shares_face(scene, *ranks as usize);
+    if let Some(why) = alone(scene, *unknowns).filter(|_| *ranks > 1 && !shared) {
         let _ = writeln!(text, "{:15}one rank would take no longer: {why}", "");
     }
     let _ = writeln!(text, "{:<15}at most {:.2} GB a rank", "memory:", petsc::peak_memory() as f64 / 1e9);
@@ -355,8 +356,8 @@ fn strategy(scene: &Scene, unknowns: usize) -> String {
         ],
         Form::Remembering if by_wave => vec![
             "condensed: not all moduli relax alike, so that the interior has a memory of its own;",
-            "periodic layer: it is solved for wavenumber by wavenumber (by the first rank alone), once per step,",
-            "without a sparse matrix; Newton runs on the nodes in contact",
+            "periodic layer: it is solved for wavenumber by wavenumber, once per step, without a sparse matrix;",
+            "Newton runs on the nodes in contact",
         ],
         Form::Remembering => vec![
             "condensed: not all moduli relax alike, so that the interior has a memory of its own; one",
@@ -364,8 +365,11 @@ fn strategy(scene: &Scene, unknowns: usize) -> String {
         ],
     };
     let mut lines = lines;
-    let alone = alone(scene, unknowns).map(|why| format!("one MPI rank: {why}"));
-    lines.extend(alone.as_deref());
+    let ranks = match composition::shares_face(scene, 2) {
+        true => Some("the ranks share its nodes and its waves".to_owned()),
+        false => alone(scene, unknowns).map(|why| format!("one MPI rank: {why}")),
+    };
+    lines.extend(ranks.as_deref());
     format!("{asked}{}", lines.join(&format!("\n{:15}", "")))
 }
 

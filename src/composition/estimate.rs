@@ -5,7 +5,7 @@ use std::path::Path;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::{Form, Outline, form};
+use super::{Form, Outline, form, shares_face};
 use crate::error::{Error, Result};
 use crate::loading::Target;
 use crate::memory;
@@ -202,13 +202,13 @@ fn coupled_face(scene: &Scene, file: &Path, outline: &Outline) -> Result<()> {
 
 /// The same for this process, the first of so many ranks.
 ///
-/// The first rank has the interior of a condensed problem alone; all ranks share one system of all unknowns.
+/// The first rank has a condensed problem alone, unless all share its face; all ranks share one system of all unknowns.
 ///
 /// # Errors
 /// [`Error::Scene`] with the remedy.
 pub fn affordable(scene: &Scene, file: &Path, outline: &Outline, ranks: usize) -> Result<()> {
     coupled_face(scene, file, outline)?;
-    let share = if form(scene) == Form::Monolithic { ranks as f64 } else { 1.0 };
+    let share = if form(scene) == Form::Monolithic || shares_face(scene, ranks) { ranks as f64 } else { 1.0 };
     let steps = size_of::<Target>() as f64 * scene.steps() as f64;
     let needed = (Estimate::of(scene, outline).memory - PROGRAM) / share + steps;
     let Some(found) = memory::available().filter(|found| needed > found.bytes) else { return Ok(()) };

@@ -24,6 +24,7 @@ use crate::energy::{FaceEnergy, MountEnergy};
 use crate::error::Result;
 use crate::friction::Law;
 use crate::loading::{DIRECTIONS, Mount, Placement, Way};
+use crate::parallel::Team;
 use crate::snapshot::Snapshot;
 
 /// What friction does at a point over a step.
@@ -72,7 +73,7 @@ impl Exchange {
         self.energy
     }
 
-    /// Takes the account to the end of a step that is about to be committed.
+    /// Takes the account to the end of a step that is about to be committed. Collective.
     pub fn advance<const D: usize>(
         &mut self,
         interface: &mut Interface<D>,
@@ -84,6 +85,8 @@ impl Exchange {
         let dt = place.dt;
         let way = place.way();
         let (mut penalty, mut work, mut shears, mut pressing) = (0.0, 0.0, SVector::<f64, D>::zeros(), 0.0);
+        let team = interface.team().clone();
+        let [mut elastic, mut friction, mut wear] = team.so_far([self.elastic, self.energy.friction, self.energy.wear]);
         let mut heights = heights(interface);
         for (i, (before, after)) in interface.states().iter().zip(states).enumerate() {
             let point = &interface.points().all()[i];
@@ -92,22 +95,26 @@ impl Exchange {
             let pressure = 0.5 * (before.pressure + after.pressure);
             // What friction is not let give back, the indenter is not let take.
             let Rub { shear, stored, lost, taken } = Rub::new(interface.friction(), before, after);
-            self.elastic += point.weight * shear.dot(&stored);
-            self.energy.friction += point.weight * taken;
+            elastic += point.weight * shear.dot(&stored);
+            friction += point.weight * taken;
             work += point.weight * (pressure * closed + shear.dot(&(way - lost)) + taken);
             pressing += point.weight * (pressure * point.normal[D - 1] - shear[D - 1]);
             shears += shear * point.weight;
             penalty += 0.5 * point.weight * after.pressure * after.overlap;
             let worn = after.worn - before.worn;
-            self.energy.wear += point.weight * pressure * worn;
+            wear += point.weight * pressure * worn;
             if let Some(settled) = &settled {
-                self.energy.wear += point.weight * pressure * settled[i];
+                wear += point.weight * pressure * settled[i];
                 heights[i] += worn;
             }
         }
+        let across = if D > 2 { shears[1] } else { 0.0 };
+        let [elastic, friction, wear, penalty, work, pressing, across] =
+            team.sum([elastic, friction, wear, penalty, work, pressing, across]);
+        (self.elastic, self.energy.friction, self.energy.wear) = (elastic, friction, wear);
         let normal = pressing * place.approach_rate * dt;
         // What the profile's slope meets goes with the first direction along the face: that of a plane, or of both mounts in space.
-        let across = if D > 2 { shears[1] * place.sliding_rate.y * dt } else { 0.0 };
+        let across = across * place.sliding_rate.y * dt;
         self.supply(interface.placement().ways(&place), mounts, [normal, work - normal - across, across]);
         self.heights = heights;
         self.energy.penalty = penalty + self.elastic;
@@ -144,20 +151,20 @@ impl Exchange {
     }
 
     /// Adds the account to a snapshot.
-    pub fn save(&self, snapshot: &mut Snapshot) {
+    pub fn save(&self, team: &Team, snapshot: &mut Snapshot) {
         let Self { energy: FaceEnergy { work, friction, penalty, wear, mounts }, elastic, .. } = self;
         let MountEnergy { spring, dashpot, kinetic } = mounts;
         let energies = [work, friction, penalty, elastic, spring, dashpot, kinetic, wear];
         snapshot.put("face-energy", energies.map(|energy| *energy).to_vec());
-        snapshot.put("face-heights", self.heights.clone());
+        snapshot.put("face-heights", team.collected(self.heights.clone()));
     }
 
     /// Takes the account from a snapshot.
-    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
+    pub fn restore(&mut self, team: &Team, snapshot: &Snapshot) -> Result<()> {
         let [work, friction, penalty, elastic, spring, dashpot, kinetic, wear] = snapshot.numbers("face-energy")?;
         self.energy = FaceEnergy { work, friction, penalty, wear, mounts: MountEnergy { spring, dashpot, kinetic } };
         self.elastic = elastic;
-        snapshot.fill("face-heights", &mut self.heights)
+        snapshot.fill_own("face-heights", team, &mut self.heights)
     }
 }
 

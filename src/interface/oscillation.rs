@@ -3,6 +3,7 @@
 use nalgebra::SVector;
 
 use crate::mesh::{Face, Grid};
+use crate::parallel::Team;
 
 /// The oscillation indicator of tractions at the nodes of a face, whose last component is the pressure, without a unit: ours.
 ///
@@ -18,12 +19,18 @@ use crate::mesh::{Face, Grid};
 /// is e / rms |t| for a checkerboard, 1 for nothing but a checkerboard, and falls with the spacing of the nodes for
 /// anything resolved. A pair along an axis of the face counts when it and the nodes beside it are in contact. A face whose nodes
 /// make no grid has no indicator: 0.
-pub fn oscillation<const D: usize>(face: &Face<D>, tractions: &[SVector<f64, D>]) -> f64 {
+///
+/// `counted` of the nodes are this rank's, and count; the others only stand beside them.
+pub fn oscillation<const D: usize>(
+    (face, counted): (&Face<D>, usize),
+    tractions: &[SVector<f64, D>],
+    team: &Team,
+) -> f64 {
     let Some(grid) = &face.grid else { return 0.0 };
     let touches = |node: usize| tractions[node][D - 1] > 0.0;
-    let contact: Vec<f64> = tractions.iter().filter(|t| t[D - 1] > 0.0).map(|t| t.norm_squared()).collect();
+    let contact: Vec<f64> = tractions[..counted].iter().filter(|t| t[D - 1] > 0.0).map(|t| t.norm_squared()).collect();
     let (mut turned, mut pairs) = (0.0, 0_u32);
-    for (axis, node) in (0..grid.axes.len()).flat_map(|axis| (0..tractions.len()).map(move |node| (axis, node))) {
+    for (axis, node) in (0..grid.axes.len()).flat_map(|axis| (0..counted).map(move |node| (axis, node))) {
         let Some(four) = four(grid, node, axis).filter(|four| four.iter().all(|&node| touches(node))) else { continue };
         let lengths = [0, 1, 2].map(|i| distance(face, grid, axis, [four[i], four[i + 1]]));
         let slopes = [0, 1, 2].map(|i| (tractions[four[i + 1]] - tractions[four[i]]) / lengths[i]);
@@ -31,11 +38,12 @@ pub fn oscillation<const D: usize>(face: &Face<D>, tractions: &[SVector<f64, D>]
         turned += left.component_mul(&right).iter().map(|product| (-product).max(0.0)).sum::<f64>();
         pairs += 1;
     }
-    if pairs == 0 {
+    let mine = [turned, f64::from(pairs), contact.iter().sum::<f64>(), contact.len() as f64];
+    let [turned, pairs, squares, contact] = team.sum(mine);
+    if pairs == 0.0 {
         return 0.0;
     }
-    let square = contact.iter().sum::<f64>() / contact.len() as f64;
-    (turned / (16.0 * f64::from(pairs) * square)).sqrt()
+    (turned / (16.0 * pairs * (squares / contact))).sqrt()
 }
 
 /// Four different nodes in a row, of which `node` is the first.
@@ -68,7 +76,8 @@ mod tests {
         let along = |node: usize| if D == 2 { (node, node) } else { (node / nodes, node / nodes + node % nodes) };
         let pressure = |node: usize| p(along(node).1, along(node).0 as f64 / nodes as f64);
         let traction = |node| SVector::from_fn(|i, _| if i + 1 == D { pressure(node) } else { 0.0 });
-        oscillation::<D>(&face, &(0..face.count()).map(traction).collect::<Vec<_>>())
+        let tractions: Vec<_> = (0..face.count()).map(traction).collect();
+        oscillation::<D>((&face, face.count()), &tractions, &Team::alone())
     }
 
     fn checkerboard(i: usize) -> f64 {

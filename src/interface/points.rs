@@ -1,11 +1,14 @@
 //! Where the laws of the contact are evaluated.
 
+use std::rc::Rc;
+
 use nalgebra::{SVector, Vector2};
 
 use crate::element::mpjr::Quadrature;
 use crate::error::Result;
 use crate::loading::Placement;
 use crate::mesh::{Axis, Face, Grid};
+use crate::parallel::Team;
 use crate::profile::{Height, Surface};
 
 /// A point of the face where the laws are evaluated.
@@ -25,8 +28,10 @@ pub struct Points<const D: usize> {
     /// Of point i, `shares[starts[i]..starts[i + 1]]`: nodes and what part of it each carries, which sum to 1.
     shares: Vec<(usize, f64)>,
     starts: Vec<usize>,
-    /// The grid that the points make, if they do.
+    /// The grid that the points make, if they do; of a parted face that of all points.
     grid: Option<Grid>,
+    /// The ranks that share them.
+    team: Rc<Team>,
     flat: bool,
     /// Of the profile over each point, with the indenter where it was placed last.
     heights: Vec<Height>,
@@ -94,10 +99,27 @@ impl<const D: usize> Points<D> {
 
     fn of((all, shares, starts): (Vec<Point<D>>, Vec<(usize, f64)>, Vec<usize>), grid: Option<Grid>) -> Self {
         let flat = all.iter().all(|point| point.normal[D - 1] == 1.0);
-        Self { all, shares, starts, grid, flat, heights: Vec::new(), placed: None }
+        Self { all, shares, starts, grid, team: Team::alone(), flat, heights: Vec::new(), placed: None }
     }
 
-    /// Evaluates the profile at the points, once per place of the indenter.
+    /// Those of this rank, where nodes are points that make a grid.
+    pub fn among(self, team: Rc<Team>) -> Self {
+        let all = self.all[team.nodes(self.all.len())].to_vec();
+        let (shares, starts) = ((0..all.len()).map(|node| (node, 1.0)).collect(), (0..=all.len()).collect());
+        Self { all, shares, starts, team, heights: Vec::new(), placed: None, ..self }
+    }
+
+    /// The ranks that share them.
+    pub fn team(&self) -> &Rc<Team> {
+        &self.team
+    }
+
+    /// How many there are on all ranks.
+    pub fn everywhere(&self) -> usize {
+        self.team.count(self.all.len())
+    }
+
+    /// Evaluates the profile at the points, once per place of the indenter. Collective.
     ///
     /// # Errors
     /// A domain error where the profile is not known.
@@ -106,7 +128,7 @@ impl<const D: usize> Points<D> {
             return Ok(());
         }
         self.placed = None;
-        self.heights = self.heights_at(profile, placement.sliding)?;
+        self.heights = self.team.agree(self.heights_at(profile, placement.sliding))?;
         self.placed = Some(placement.sliding);
         Ok(())
     }
@@ -124,12 +146,12 @@ impl<const D: usize> Points<D> {
         self.all.iter().map(|point| profile.at(point.along() - sliding)).collect()
     }
 
-    /// All of them.
+    /// All of this rank.
     pub fn all(&self) -> &[Point<D>] {
         &self.all
     }
 
-    /// How many there are.
+    /// How many there are on this rank.
     pub fn count(&self) -> usize {
         self.all.len()
     }
@@ -160,12 +182,17 @@ impl<const D: usize> Points<D> {
         }
     }
 
-    /// The points on either side of one along an axis of the face; none at the ends, and none where points are not nodes of a grid.
+    /// The points on either side of one along an axis of the face; none at the ends, and none where points are not nodes of a grid. Those
+    /// of the lines before and after this rank's follow its own.
     pub fn beside(&self, i: usize, axis: usize) -> [Option<usize>; 2] {
-        match &self.grid {
-            Some(grid) if !self.share_nodes() => grid.beside(i, axis),
-            _ => [None; 2],
+        let Some(grid) = self.grid.as_ref().filter(|_| !self.share_nodes()) else { return [None; 2] };
+        if axis > 0 || !self.team.is_parted() {
+            return grid.beside(i, axis);
         }
+        let (columns, count) = (grid.stride(0), self.all.len());
+        let before = i.checked_sub(columns).unwrap_or(count + i);
+        let after = if i + columns < count { i + columns } else { i + 2 * columns };
+        [Some(before), Some(after)]
     }
 
     /// The profile over each point, where the indenter was placed last.
@@ -174,7 +201,7 @@ impl<const D: usize> Points<D> {
     }
 
     /// A field of the points carried along the face by `way`, m, between points by linear interpolation; none where that is
-    /// less than the distance of two points, or where they make no grid. Off the ends of an open face there is nothing.
+    /// less than the distance of two points, or where they make no grid. Off the ends of an open face there is nothing. Collective.
     pub fn carried(&self, field: &[SVector<f64, D>], way: Vector2<f64>) -> Option<Vec<SVector<f64, D>>> {
         let axes = &self.grid.as_ref()?.axes;
         let spacing = |axis: &Axis| match axis.places.as_slice() {
@@ -195,6 +222,9 @@ impl<const D: usize> Points<D> {
     fn carried_along(&self, field: &[SVector<f64, D>], axis: usize, (line, way): (&Axis, f64)) -> Vec<SVector<f64, D>> {
         let stride = self.grid.as_ref().map_or(1, |grid| grid.stride(axis));
         let sources: Vec<_> = line.places.iter().map(|place| line.between(place - way)).collect();
+        if axis == 0 && self.team.is_parted() {
+            return self.carried_across(field, &sources);
+        }
         let from = |node: usize| {
             let at = node / stride % sources.len();
             let first = node - at * stride;
@@ -202,5 +232,27 @@ impl<const D: usize> Points<D> {
             sources[at].map_or(SVector::zeros(), |sources| sources.into_iter().map(value).sum())
         };
         (0..field.len()).map(from).collect()
+    }
+
+    /// The same along the first axis, where the lines are parted: of each line those that it comes from, and their shares.
+    fn carried_across(&self, field: &[SVector<f64, D>], sources: &[Option<[(usize, f64); 2]>]) -> Vec<SVector<f64, D>> {
+        let of = |rank: usize| &sources[self.team.lines_of(rank)];
+        let wanted = |rank: usize| of(rank).iter().flatten().flatten().map(|(line, _)| *line).collect();
+        let flat: Vec<f64> = field.iter().flatten().copied().collect();
+        let [_, rank] = self.team.ranks();
+        let mine = of(rank);
+        let each = flat.len() / mine.len();
+        let fetched = self.team.fetched(&flat, wanted);
+        let mut lines = fetched.chunks_exact(each);
+        let mut carried = vec![SVector::zeros(); field.len()];
+        for (target, sources) in carried.chunks_exact_mut(each / D).zip(mine) {
+            for (_, share) in sources.iter().flatten() {
+                let Some(line) = lines.next() else { break };
+                for (target, value) in target.iter_mut().zip(line.chunks_exact(D)) {
+                    *target += SVector::<f64, D>::from_column_slice(value) * *share;
+                }
+            }
+        }
+        carried
     }
 }

@@ -63,21 +63,29 @@ impl<const D: usize> Interface<D> {
         self.worn.is_some()
     }
 
-    /// The integral of the worn depth, m^2 (m^3 in space).
+    /// The integral of the worn depth, m^2 (m^3 in space). Collective.
     pub(super) fn worn_volume(&self) -> f64 {
-        let of_body =
-            || self.points.all().iter().zip(&self.accepted).map(|(point, state)| point.weight * state.worn).sum();
+        let of_body = || -> f64 {
+            let worn = self.points.all().iter().zip(&self.accepted).map(|(point, state)| point.weight * state.worn);
+            let [volume] = self.team().sum([worn.sum()]);
+            volume
+        };
         self.worn.as_ref().map_or_else(of_body, Worn::volume)
     }
 
-    /// Takes off the indenter what a step to `states` has worn.
+    /// Takes off the indenter what a step to `states` has worn. Collective.
     pub(super) fn wear_off(&mut self, placement: Placement, states: &[State<D>]) {
         let Some(worn) = &mut self.worn else { return };
+        let mut taken = Vec::new();
         for ((point, before), after) in self.points.all().iter().zip(&self.accepted).zip(states) {
             if after.worn > before.worn {
-                worn.take(point.along() - placement.sliding, point.weight * (after.worn - before.worn));
+                let place = point.along() - placement.sliding;
+                taken.extend([place.x, place.y, point.weight * (after.worn - before.worn)]);
             }
         }
+        // Every rank knows the whole indenter, and takes off it what all have worn, in the same order.
+        let all = self.points.team().shared(taken);
+        all.as_chunks().0.iter().for_each(|&[x, y, volume]| worn.take(Vector2::new(x, y), volume));
         // Its shape is another one.
         self.points.forget();
     }

@@ -65,6 +65,31 @@ impl<const D: usize> Face<D> {
         self.unknown.len()
     }
 
+    /// The nodes of some of the lines of a face whose nodes make a grid, without facets: lines that come round a periodic axis stand beyond
+    /// its end.
+    pub fn of_lines(&self, lines: impl Iterator<Item = usize>) -> Self {
+        let Some(Grid { axes }) = &self.grid else { return self.clone() };
+        let columns: usize = axes[1..].iter().map(|axis| axis.places.len()).product();
+        let count = axes[0].places.len();
+        let mut part = Self { grid: Some(Grid { axes: axes.clone() }), ..Self::default() };
+        let mut along = Axis { places: Vec::new(), period: None };
+        for line in lines {
+            let beyond = (line / count) as f64 * axes[0].period.unwrap_or(0.0);
+            along.places.push(axes[0].places[line % count] + beyond);
+            let nodes = line % count * columns..(line % count + 1) * columns;
+            part.unknown.extend_from_slice(&self.unknown[nodes.clone()]);
+            part.places.extend(self.places[nodes].iter().map(|place| {
+                let mut place = *place;
+                place[0] += beyond;
+                place
+            }));
+        }
+        if let Some(grid) = &mut part.grid {
+            grid.axes[0] = along;
+        }
+        part
+    }
+
     /// The pairs of different nodes that share a facet, both ways round, in order.
     pub fn pairs(&self) -> Vec<(usize, usize)> {
         let of_facet = |facet: &Facet<D>| {

@@ -8,7 +8,7 @@ use crate::loading::{DIRECTIONS, Mount, Phase, Placement};
 use crate::petsc::Step;
 use crate::snapshot::Snapshot;
 
-/// The face, known whole on every rank.
+/// The face, known whole on every rank, or on each its own part.
 pub struct AcceptedFace<const D: usize> {
     /// Its points and their states.
     pub interface: Interface<D>,
@@ -118,7 +118,7 @@ impl<const D: usize> AcceptedFace<D> {
     /// How far a face that a step takes to `ends`, with the indenter at `placed`, is from where the accepted rates would have taken it, m:
     /// the root mean square of d = u - u' - v' dt over as many nodes as carry the displacement,
     /// (sum d^2 / sum u^2)^1/2 max |u|, so that a small contact on a long face counts for what it is; or, where that is more, how far the
-    /// indenter is on a mount. A dead load that comes at once takes the first step, and says nothing of rates.
+    /// indenter is on a mount. Collective. A dead load that comes at once takes the first step, and says nothing of rates.
     pub fn departure(&self, step: Step, ends: &[f64], placed: Placement) -> f64 {
         let drops = self.drops();
         if drops && self.time == 0.0 {
@@ -128,7 +128,9 @@ impl<const D: usize> AcceptedFace<D> {
         let starts = self.displacement.iter().zip(&self.rate);
         let departed: f64 = ends.iter().zip(starts).map(|(end, (u, v))| (end - u - v * going).powi(2)).sum();
         let displaced: f64 = ends.iter().map(|u| u * u).sum();
-        let largest = ends.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+        let team = self.interface.team();
+        let [departed, displaced] = team.sum([departed, displaced]);
+        let [largest] = team.most([ends.iter().fold(0.0, |most: f64, u| most.max(u.abs()))]);
         let face = if displaced > 0.0 { (departed / displaced).sqrt() * largest } else { departed.sqrt() };
         let ways = self.interface.placement().ways(&placed);
         let mounted = ways.iter().zip(&self.mounts).filter(|(_, mount)| mount.is_some());
@@ -140,7 +142,7 @@ impl<const D: usize> AcceptedFace<D> {
         self.mounts[0].is_some_and(|mount| mount.drops())
     }
 
-    /// Takes the accepted state to the end of a step.
+    /// Takes the accepted state to the end of a step. Collective.
     pub fn commit(
         &mut self,
         (time, placement): (f64, Placement),
@@ -184,25 +186,27 @@ impl<const D: usize> AcceptedFace<D> {
         Contact { face: &mut self.interface, displacement: &self.displacement, dt: self.dt, rubbed }
     }
 
-    /// Adds it to a snapshot.
+    /// Adds it to a snapshot. Collective.
     pub fn save(&self, snapshot: &mut Snapshot) {
-        snapshot.put("face-displacement", self.displacement.clone());
-        snapshot.put("face-rate", self.rate.clone());
+        let team = self.interface.team();
+        snapshot.put("face-displacement", team.collected(self.displacement.clone()));
+        snapshot.put("face-rate", team.collected(self.rate.clone()));
         snapshot.put("face-times", vec![self.time, self.dt, self.origin[0], self.origin[1]]);
         self.interface.save(snapshot);
         if let Some(exchange) = &self.exchange {
-            exchange.save(snapshot);
+            exchange.save(team, snapshot);
         }
     }
 
     /// Takes it from a snapshot that is whole on every rank.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
-        snapshot.fill("face-displacement", &mut self.displacement)?;
-        snapshot.fill("face-rate", &mut self.rate)?;
+        let team = self.interface.team().clone();
+        snapshot.fill_own("face-displacement", &team, &mut self.displacement)?;
+        snapshot.fill_own("face-rate", &team, &mut self.rate)?;
         let [time, dt, approach, force] = snapshot.numbers("face-times")?;
         (self.time, self.dt, self.origin) = (time, dt, [approach, force]);
         self.interface.restore(snapshot)?;
-        self.exchange.as_mut().map_or(Ok(()), |exchange| exchange.restore(snapshot))
+        self.exchange.as_mut().map_or(Ok(()), |exchange| exchange.restore(&team, snapshot))
     }
 
     fn phase(&self) -> Result<&Phase> {

@@ -1,7 +1,9 @@
 //! The body condensed onto its contact face, which is solved for its tractions (super::traction).
 //!
 //! TS's solution is the tractions, F(t, T, dT/dt) = G with neither rate nor shift: an equation whose history is kept when TS
-//! has accepted the step. The unknowns live on rank 0; the other ranks follow, and help when bulk fields are asked for.
+//! has accepted the step. The unknowns live on rank 0, and the other ranks follow and help when bulk fields are asked for; or, of a large
+//! periodic face in space, on the ranks that have its points ([`crate::parallel::Team`]): then all do the same, each with its own points,
+//! and what is decided is decided by totals over all.
 
 mod checkpoint;
 mod linear;
@@ -12,14 +14,14 @@ use nalgebra::SVector;
 
 use super::accepted::AcceptedFace;
 use super::response::{Response, unprepared};
-use super::traction::{self, Answer, Behind, Held, Laws, Outcome, Site};
+use super::traction::{self, Answer, Behind, Held, Laws, Outcome, Site, Sites};
 use super::{BulkFields, Contact, Tempered, TransientProblem, Work};
 use crate::energy::Energy;
 use crate::error::Result;
 use crate::friction::Law;
 use crate::interface::{Interface, State};
 use crate::loading::{DIRECTIONS, Mount, Phase, Placement, Support};
-use crate::parallel::share_numbers;
+use crate::parallel::{Team, share_numbers};
 use crate::petsc::{Gather, Matrix, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 use linear::Linear;
@@ -39,12 +41,12 @@ pub struct Condensed<const D: usize, R> {
     response: R,
     tolerance: f64,
     way: Way,
-    /// Brings vectors of the face's nodes to all ranks.
-    gather: Gather,
+    /// Brings vectors of the face's nodes to all ranks, once it was asked for.
+    gather: Option<Gather>,
     /// u_free, and the accepted u, of the face's nodes.
     free: Vector,
     displacement: Vector,
-    /// The accepted tractions, and those a step before, Pa; on rank 0.
+    /// The accepted tractions of this rank's points, and those a step before, Pa.
     accepted: Vec<SVector<f64, D>>,
     before: Vec<SVector<f64, D>>,
     /// How large the accepted tractions are, in the norm of the convergence test.
@@ -97,8 +99,8 @@ struct Stage<const D: usize> {
     /// Whether nothing has to move: under an indenter that does not, the accepted tractions leave all where it was, to the last digit,
     /// and friction does not creep.
     still: bool,
-    /// On rank 0.
-    sites: Vec<Site<D>>,
+    /// On the ranks that have points.
+    sites: Sites<D>,
     /// The last state that was tried.
     trial: Outcome<D>,
     /// The norm of G at the first.
@@ -110,7 +112,7 @@ struct Stage<const D: usize> {
 }
 
 impl<const D: usize, R: Response<D>> Condensed<D, R> {
-    /// At rest. `layout` has the components of each face node on rank 0; `tolerance` is relative to the tractions.
+    /// At rest. `layout` has the components of each face node, on rank 0 or on the rank that has it; `tolerance` is relative to the tractions.
     pub fn new(
         comm: &SimpleCommunicator,
         (interface, mounts): (Interface<D>, [Option<Mount>; DIRECTIONS]),
@@ -118,8 +120,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         layout: &Vector,
         (tolerance, freedom, way): (f64, Freedom, Way),
     ) -> Result<Self> {
-        let components = D * interface.face().count();
-        let indices: Vec<i32> = (0..components as i32).collect();
+        let components = D * interface.nodes_everywhere();
         let points = if layout.local_len() > 0 { interface.points().count() } else { 0 };
         let transforms = response.work().transforms;
         Ok(Self {
@@ -128,7 +129,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
             response,
             tolerance,
             way,
-            gather: Gather::new(layout, &indices)?,
+            gather: None,
             free: layout.like()?,
             displacement: layout.like()?,
             accepted: vec![SVector::zeros(); points],
@@ -156,11 +157,11 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         let (trial, usual) = (Outcome::none(), self.usual_slip(&placement));
         let sites = match self.behind() {
             Some(behind) => behind.sites(&self.face, placement, &self.free.view()?),
-            None => Vec::new(),
+            None => Sites::none(),
         };
         let still = placement.is_still()
             && self.face.interface.friction().is_none_or(Law::rests)
-            && self.displaced(&self.accepted)?.0 == self.face.displacement();
+            && self.team().all_say(self.displaced(&self.accepted)?.0 == self.face.displacement());
         self.stage = Some(Stage { step, placement, still, sites, trial, first: None, newton: 0, usual });
         Ok(())
     }
@@ -174,6 +175,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
             slipped += point.weight * state.pressure * state.slip.norm();
             pressed += point.weight * state.pressure;
         }
+        let [slipped, pressed] = self.team().sum([slipped, pressed]);
         let mean = if pressed > 0.0 { slipped / pressed } else { 0.0 };
         moved + mean * to.dt / self.face.last_step()
     }
@@ -184,23 +186,34 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         self.with_laws(stage, |laws| traction::jumped(&stage.sites, &stage.trial, laws, (stage.usual, &before)))
     }
 
-    /// What is behind the face, on the rank that has it.
+    /// The ranks that share the face.
+    fn team(&self) -> &Team {
+        self.face.interface.team()
+    }
+
+    /// What is behind the face, on the ranks that have it.
     fn behind(&self) -> Option<Behind<'_, D>> {
         let (interface, secant) = (&self.face.interface, self.response.secant());
         self.response.compliance().map(|compliance| Behind { interface, compliance, secant })
     }
 
-    /// kappa times how far the indenter has gone in each direction: the last entries of a vector of the unknowns.
+    /// kappa times how far the indenter has gone in each direction: the last entries of a vector of the unknowns, on the first rank.
+    /// Collective.
     fn last(&self, u: &Vector) -> Result<[f64; DIRECTIONS]> {
+        if self.freedom.unknowns() == 0 {
+            return Ok([0.0; DIRECTIONS]);
+        }
         let values = u.view()?;
         let mut entries = values.iter().rev().take(self.freedom.unknowns()).rev();
-        Ok(self.freedom.directions.map(|free| if free { entries.next().copied().unwrap_or(0.0) } else { 0.0 }))
+        let last = self.freedom.directions.map(|free| if free { entries.next().copied().unwrap_or(0.0) } else { 0.0 });
+        Ok(self.team().of_first(last))
     }
 
     /// Writes them.
     fn write_last(&self, last: [f64; DIRECTIONS], u: &mut Vector) -> Result<()> {
         let mut values = u.view_mut()?;
-        let mut entries = values.iter_mut().rev().take(self.freedom.unknowns()).rev();
+        let unknowns = if self.team().is_first() { self.freedom.unknowns() } else { 0 };
+        let mut entries = values.iter_mut().rev().take(unknowns).rev();
         for (free, last) in self.freedom.directions.into_iter().zip(last) {
             if let Some(entry) = free.then(|| entries.next()).flatten() {
                 *entry = last;
@@ -222,7 +235,8 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
                 let changes = self.accepted.iter().zip(&self.before).map(|(now, before)| now - before);
                 let squares =
                     changes.clone().zip(points.all()).map(|(change, point)| point.weight * change.norm_squared());
-                if squares.sum::<f64>().sqrt() <= self.tolerance * self.scale {
+                let [square] = self.team().sum([squares.sum::<f64>()]);
+                if square.sqrt() <= self.tolerance * self.scale {
                     return Ok(());
                 }
                 self.accepted.iter().zip(changes).map(|(now, change)| now + change * share).collect()
@@ -235,13 +249,13 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
     }
 
     /// How far the indenter has gone from its placement, m, by a vector of the unknowns.
-    fn shift(&self, sites: &[Site<D>], u: &Vector) -> Result<SVector<f64, D>> {
-        Ok(traction::shift::<D>(self.last(u)?) / traction::modulus(sites))
+    fn shift(&self, sites: &Sites<D>, u: &Vector) -> Result<SVector<f64, D>> {
+        Ok(traction::shift::<D>(self.last(u)?) / sites.modulus())
     }
 
     /// The last entries of the vector of a state.
-    fn entries(sites: &[Site<D>], shift: &SVector<f64, D>) -> [f64; DIRECTIONS] {
-        let modulus = traction::modulus(sites);
+    fn entries(sites: &Sites<D>, shift: &SVector<f64, D>) -> [f64; DIRECTIONS] {
+        let modulus = sites.modulus();
         std::array::from_fn(|direction| shift.dot(&traction::axis(direction)) * modulus)
     }
 
@@ -259,7 +273,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         })
     }
 
-    /// The displacements of the nodes under tractions, m, and the forces, N/m; on rank 0.
+    /// The displacements of the nodes under tractions, m, and the forces, N/m; on the ranks that have points.
     fn displaced(&self, tractions: &[SVector<f64, D>]) -> Result<(Vec<f64>, Vec<f64>)> {
         match self.behind() {
             Some(behind) => behind.displaced(tractions, &self.free.view()?),
@@ -275,7 +289,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         let (sites, tractions) = (&stage.sites, tractions::<D>(u)?);
         let shift = self.shift(sites, u)?;
         // What is tried on the way knows no motion along the face where the laws ask for none.
-        let known = tractions == stage.trial.tractions && shift == stage.trial.shift;
+        let known = self.team().all_say(tractions == stage.trial.tractions && shift == stage.trial.shift);
         if known && !behind.is_normal_alone() {
             return Ok(stage.trial.clone());
         }
@@ -294,9 +308,9 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         gone
     }
 
-    /// Gives every rank the states and displacements of rank 0. Collective.
+    /// Gives every rank the states and displacements of rank 0, unless each has its own. Collective.
     fn share(&self, states: Vec<State<D>>, mut displacement: Vec<f64>) -> (Vec<State<D>>, Vec<f64>) {
-        if self.comm.size() == 1 {
+        if self.comm.size() == 1 || self.team().is_parted() {
             return (states, displacement);
         }
         let mut list = Vec::new();
@@ -326,9 +340,9 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         (met, states)
     }
 
-    /// Whether nothing moves in the step.
+    /// Whether nothing moves in the step. Collective.
     fn rests(&self, stage: &Stage<D>, outcome: &Outcome<D>) -> bool {
-        stage.still && outcome.tractions == self.accepted
+        stage.still && self.team().all_say(outcome.tractions == self.accepted)
     }
 
     /// Tractions near those that meet the laws, from others.
@@ -348,7 +362,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         let held = stage.placement.supports.map(|support| support.is_some());
         self.write_last(std::array::from_fn(|i| if held[i] { unbalanced[i] } else { gone[i] }), f)?;
         let stage = self.stage.as_mut().ok_or_else(unprepared)?;
-        let norm = outcome.norm(&stage.sites);
+        let norm = outcome.norm();
         stage.first.get_or_insert(norm);
         stage.trial = outcome;
         Ok(())
@@ -387,9 +401,7 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
         self.enter(step)?;
         let outcome = self.outcome(u)?;
         let down = match (&self.stage, outcome.in_contact()) {
-            (Some(stage), 0) => {
-                traction::touch(&stage.sites, &outcome.motions, support.force) * traction::modulus(&stage.sites)
-            }
+            (Some(stage), 0) => traction::touch(&stage.sites, &outcome.motions, support.force) * stage.sites.modulus(),
             _ => 0.0,
         };
         self.write_last([down, 0.0, 0.0], u)
@@ -398,7 +410,7 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
     fn search(&mut self, _step: Step, u: &mut Vector, decrement: &Vector, f: &mut Vector) -> Result<()> {
         let stage = self.stage.as_mut().ok_or_else(unprepared)?;
         stage.newton += 1;
-        let astray = stage.newton == PATIENCE && self.face.displacement().len() <= LARGE_FACE;
+        let astray = stage.newton == PATIENCE && !self.reuse;
         let stage = self.stage.as_ref().ok_or_else(unprepared)?;
         let outcome = match self.behind() {
             Some(_) if astray => self.start(stage.trial.clone())?,
@@ -430,9 +442,9 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
     fn test(&mut self, iteration: usize, _norm: f64) -> Verdict {
         let mut verdict = 0;
         if let Some(stage) = self.stage.as_ref().filter(|stage| !stage.sites.is_empty()) {
-            let Stage { sites, trial, first, .. } = stage;
-            let norm = trial.norm(sites);
-            let scale = self.scale.max(trial.size(sites));
+            let Stage { trial, first, .. } = stage;
+            let norm = trial.norm();
+            let scale = self.scale.max(trial.size());
             let reference = if scale > 0.0 { scale } else { first.unwrap_or(norm) };
             let allowed = match iteration {
                 0 if self.rests(stage, trial) => norm,
@@ -441,8 +453,8 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
             };
             verdict = match norm {
                 norm if !norm.is_finite() => 2,
-                norm if norm <= allowed.max(trial.noise(sites)) && self.jumped(stage) => 3,
-                norm if norm <= allowed.max(trial.noise(sites)) => 1,
+                norm if norm <= allowed.max(trial.noise()) && self.jumped(stage) => 3,
+                norm if norm <= allowed.max(trial.noise()) => 1,
                 _ => 0,
             };
         }
@@ -458,7 +470,9 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
     fn departure(&mut self, step: Step, u: &Vector) -> Result<f64> {
         let mut ends = self.displaced(&tractions::<D>(u)?)?.0;
         ends.resize(self.face.displacement().len(), 0.0);
-        self.comm.process_at_rank(0).broadcast_into(&mut ends[..]);
+        if !self.team().is_parted() {
+            self.comm.process_at_rank(0).broadcast_into(&mut ends[..]);
+        }
         let stage = self.stage.as_ref().ok_or_else(unprepared)?;
         let gone = self.gone(stage, stage.trial.shift);
         let placed = stage.placement.gone_on(&self.face.interface.placement(), gone);
@@ -469,6 +483,9 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
         self.response.prepare(Step { t: duration, dt: duration })?;
         self.face.interface.place(Placement::default())?;
         let approach = || self.behind().map(|behind| traction::approach_under(&behind, force)).transpose();
+        if self.team().is_parted() {
+            return Ok(approach()?.unwrap_or(0.0));
+        }
         Ok(share_numbers(&self.comm, || Ok(approach()?.into_iter().collect()))?.first().copied().unwrap_or(0.0))
     }
 
@@ -482,7 +499,7 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
         let placement = self.face.placed(step.t, stage.placement, gone)?;
         let (met, states) = self.ends(&stage, &outcome);
         let (displacement, forces) = self.displaced(&met)?;
-        self.scale = outcome.size(&stage.sites);
+        self.scale = outcome.size();
         write(u, met.iter().copied())?;
         // TS takes the next solution as a change of this one, so that its digits depend on it.
         self.write_last([0.0; DIRECTIONS], u)?;
@@ -538,7 +555,14 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
 
     fn bulk_fields(&mut self, _u: &Vector) -> Result<BulkFields> {
         self.recoveries += 1;
-        self.response.bulk_fields(&mut self.gather, &self.displacement)
+        let gather = match &mut self.gather {
+            Some(gather) => gather,
+            none => {
+                let components: Vec<i32> = (0..(D * self.face.interface.nodes_everywhere()) as i32).collect();
+                none.insert(Gather::new(&self.displacement, &components)?)
+            }
+        };
+        self.response.bulk_fields(gather, &self.displacement)
     }
 
     fn work(&self) -> Work {

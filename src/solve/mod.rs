@@ -18,6 +18,7 @@ use crate::energy::Energy;
 use crate::error::{Error, Result};
 use crate::interface::{Face, Fields, Totals};
 use crate::loading::{Phase, Placement};
+use crate::parallel::Team;
 use crate::petsc::{Matrix, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 
@@ -132,7 +133,7 @@ pub struct Work {
     pub transforms: usize,
 }
 
-/// The contact face at an accepted state, whole on every rank.
+/// The contact face at an accepted state: whole on every rank, or on each the nodes that it has of it.
 pub struct Contact<'a> {
     face: &'a mut dyn Face,
     /// Of each node, x, z or x, y, z, m.
@@ -154,12 +155,17 @@ impl Contact<'_> {
         self.face.areas()
     }
 
+    /// The ranks that share the nodes: lists are of those of this rank.
+    pub fn team(&self) -> &Team {
+        self.face.team()
+    }
+
     /// Where the indenter is.
     pub fn placement(&self) -> Placement {
         self.face.placement()
     }
 
-    /// The integrals over the face.
+    /// The integrals over the whole face. Collective where it is parted.
     pub fn totals(&mut self) -> Result<Totals> {
         self.face.totals()
     }

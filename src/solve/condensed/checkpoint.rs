@@ -11,13 +11,21 @@ use crate::petsc::{Step, Vector};
 use crate::snapshot::{NaturalOrder, Snapshot};
 
 impl<const D: usize, R: Response<D>> Condensed<D, R> {
+    /// That of the nodes of the face.
+    fn order(&self) -> Result<NaturalOrder> {
+        let (team, here) = (self.face.interface.team(), self.displacement.local_len());
+        let count = D * team.count(here / D);
+        NaturalOrder::as_it_is(&self.displacement, (D * team.nodes(count / D).start, count), team.is_first())
+    }
+
     /// Adds the accepted state, and what is reused of factors.
     pub(super) fn write_state(&mut self, snapshot: &mut Snapshot) -> Result<()> {
-        let flat = |list: &[SVector<f64, D>]| list.iter().flatten().copied().collect();
+        let team = self.face.interface.team();
+        let flat = |list: &[SVector<f64, D>]| team.collected(list.iter().flatten().copied().collect());
         snapshot.put("tractions", flat(&self.accepted));
         snapshot.put("tractions-before", flat(&self.before));
         self.face.save(snapshot);
-        let mut order = NaturalOrder::on_first_rank(&self.displacement)?;
+        let mut order = self.order()?;
         self.response.save(&mut order, snapshot)?;
         let Linear { factor, made_for, used, .. } = &self.linear;
         let (Step { t, dt }, secant) = made_for.unwrap_or((Step { t: 0.0, dt: 0.0 }, 0.0));
@@ -33,7 +41,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         for (name, list) in [("tractions", &mut self.accepted), ("tractions-before", &mut self.before)] {
             let mut flat = vec![0.0; D * list.len()];
             if !flat.is_empty() {
-                snapshot.fill(name, &mut flat)?;
+                snapshot.fill_own(name, self.face.interface.team(), &mut flat)?;
             }
             *list = flat.chunks_exact(D).map(SVector::from_column_slice).collect();
         }
@@ -42,7 +50,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         let mut here = self.displacement.view_mut()?;
         here.iter_mut().zip(self.face.displacement()).for_each(|(here, u)| *here = *u);
         drop(here);
-        let order = NaturalOrder::on_first_rank(&self.displacement)?;
+        let order = self.order()?;
         self.response.restore(&order, snapshot, &self.displacement)?;
         let [scale, t, dt, secant, used] = snapshot.numbers("condensed")?;
         (self.scale, self.stage, self.linear) = (scale, None, Linear::default());

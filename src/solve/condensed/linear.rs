@@ -39,7 +39,8 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         let border = self.with_laws(stage, |laws| Border::new(&stage.sites, (&stage.trial, &points), laws.held));
         let Linear { factor, made_for, used, .. } = &self.linear;
         let points_are_nodes = !self.face.interface.points().share_nodes();
-        let fourier = match points_are_nodes && D * points.len() > LARGE_PERIODIC_FACE {
+        let everywhere = self.face.interface.points().everywhere();
+        let fourier = match points_are_nodes && D * everywhere > LARGE_PERIODIC_FACE {
             true => Fourier::new(
                 behind.compliance,
                 behind.secant,

@@ -119,10 +119,13 @@ impl<const D: usize> Borders<D> {
             .zip(answers)
             .map(|(point, (_, traction))| point.weight * traction.pressure * point.normal[D - 1])
             .collect();
-        let area = points.iter().map(|point| point.weight).sum();
+        let area: f64 = points.iter().map(|point| point.weight).sum();
         for direction in along() {
-            let steeper: Vector2<f64> =
-                traction::steepening(held, (&SVector::<f64, D>::zeros(), direction), (&pressing, area));
+            let steeper: Vector2<f64> = traction::steepening(
+                held,
+                (&SVector::<f64, D>::zeros(), direction),
+                (&pressing, area / pressing.len().max(1) as f64),
+            );
             for other in along() {
                 self.stiffness[(other, direction)] += steeper[other - 1];
             }

@@ -109,13 +109,14 @@ impl<const D: usize> Compliance<D> {
         }
     }
 
-    /// Of a periodic layer, with C of each of its waves.
+    /// Of a periodic layer, with C of each of its waves; the nodes are those of this rank. Collective.
     pub fn of_periodic_layer(transform: Transform<D>, kernel: Kernel<D>) -> Self {
-        let order = D * transform.nodes();
+        let order = D * transform.nodes_here();
         // The others cancel among waves that mirror each other.
         let of_itself = |i: usize| {
             let all = (0..kernel.len()).map(|wave| transform.stands_for(wave) * kernel.entry(wave, i, i));
-            all.sum::<f64>() / transform.nodes() as f64
+            let [sum] = transform.team().sum([all.sum::<f64>()]);
+            sum / transform.nodes() as f64
         };
         let own = SMatrix::from_fn(|i, j| if i == j { of_itself(i) } else { 0.0 });
         Self::new(order, Form::Periodic { transform, kernel, own, first: OnceCell::new() })
@@ -176,10 +177,10 @@ impl<const D: usize> Compliance<D> {
                     }
                 }
             }
-            Form::Periodic { .. } => {
+            Form::Periodic { transform, .. } => {
                 let mut all = vec![0.0; self.order];
                 forces.for_each(|(place, force)| all[place] += force);
-                if all.iter().any(|force| *force != 0.0) {
+                if transform.team().any(all.iter().any(|force| *force != 0.0)) {
                     self.displace(&mut all, components.clone())?;
                     let moved = all.chunks_exact(D).zip(u.chunks_exact_mut(D));
                     moved
@@ -197,7 +198,7 @@ impl<const D: usize> Compliance<D> {
             return Err(Error::Internal("this face has no transform".into()));
         };
         let normal = D - 1..D;
-        match components == normal && only_normal::<D>(values) {
+        match components == normal && transform.team().all_say(only_normal::<D>(values)) {
             true => transform.filter(values, (normal.clone(), normal), |wave, w| kernel.act_normally(wave, w)),
             false => transform.filter(values, (0..D, components), |wave, w| kernel.act(wave, w)),
         }
@@ -221,14 +222,19 @@ impl<const D: usize> Compliance<D> {
         }
     }
 
+    /// Whether its nodes are parted among ranks.
+    pub fn is_parted(&self) -> bool {
+        self.waves().is_some_and(|(transform, _)| transform.team().is_parted())
+    }
+
     /// About the smallest eigenvalue of C over what is not held, m per N/m: of a periodic layer exactly, of any other face
-    /// that of the shortest-waved of the checkerboards of forces along each direction.
+    /// that of the shortest-waved of the checkerboards of forces along each direction. Collective where nodes are parted.
     pub fn smallest(&self) -> f64 {
         *self.smallest.get_or_init(|| match &self.form {
             Form::Dense { values, signs } => {
                 (0..D).map(|k| checkerboard(values, (self.order, D), signs, k)).fold(f64::INFINITY, f64::min)
             }
-            Form::Periodic { kernel, .. } => kernel.smallest(),
+            Form::Periodic { transform, kernel, .. } => transform.team().least(kernel.smallest()),
         })
     }
 }

@@ -1,6 +1,8 @@
 //! A periodic layer with memory: by wavenumber, without any sparse matrix. One sweep through the depth before Newton's
 //! method and one back after it are a step's only solve.
 
+use std::rc::Rc;
+
 use mpi::topology::SimpleCommunicator;
 use nalgebra::SMatrix;
 
@@ -16,6 +18,7 @@ use crate::bulk::{Account, Products, Series};
 use crate::element::solid::{Blocks, Split};
 use crate::energy::BodyEnergy;
 use crate::error::Result;
+use crate::parallel::Team;
 use crate::petsc::{Step, Vector};
 use crate::rheology::{Factors, Memory};
 use crate::snapshot::Snapshot;
@@ -51,15 +54,20 @@ impl<const D: usize> PeriodicColumn<D> {
         (0..count).map(|part| Operator::new(&self.stiffness(&alone(part)), transform)).collect()
     }
 
+    /// How many columns there are along each axis of the face.
+    pub fn counts(&self) -> &[usize] {
+        &self.counts
+    }
+
     /// The transform of its face.
     pub fn transform(&self) -> Transform<D> {
         Transform::new(&self.counts)
     }
 
-    /// The compliance of the face at the instantaneous moduli, of a bulk of one part.
-    pub fn compliance(&self) -> Result<Compliance<D>> {
-        let transform = self.transform();
-        let kernel = Kernel::new(self.waves(&transform)?.into_iter());
+    /// The compliance of the face at the instantaneous moduli, of a bulk of one part, parted among the ranks of a team. Collective.
+    pub fn compliance(&self, team: &Rc<Team>) -> Result<Compliance<D>> {
+        let transform = Transform::among(&self.counts, team.clone());
+        let kernel = Kernel::new(team.agree(self.waves(&transform))?.into_iter());
         Ok(Compliance::of_periodic_layer(transform, kernel))
     }
 
@@ -72,6 +80,7 @@ impl<const D: usize> PeriodicColumn<D> {
 /// An unloaded periodic layer below its face, of a bulk of one part.
 pub struct Below<const D: usize> {
     elimination: Elimination<D>,
+    rows: usize,
     transform: Transform<D>,
 }
 
@@ -80,23 +89,28 @@ impl<const D: usize> Below<D> {
     pub fn new(column: &PeriodicColumn<D>) -> Result<Self> {
         let transform = column.transform();
         let operator = Operator::new(&column.stiffness(&[1.0]), &transform);
-        Ok(Self { elimination: Elimination::new(&operator)?, transform })
+        Ok(Self { elimination: Elimination::new(&operator)?, rows: operator.rows(), transform })
     }
 
     /// The displacements of the layer on this rank, for those of each face node.
     pub fn extend(&self, face: &[f64], body: &Body<D>) -> Result<Vector> {
-        vector(&self.elimination.below(&self.transform.forward(face)?), &self.transform, body)
+        let below = self.elimination.below(&self.transform.forward(face)?);
+        let mut vector = body.vector()?;
+        write((&below, self.rows), &self.transform, Some((body, &mut vector)))?;
+        Ok(vector)
     }
 }
 
-/// Waves as a vector of the body, of which each rank takes its own part.
-fn vector<const D: usize>(waves: &[Wave<D>], transform: &Transform<D>, body: &Body<D>) -> Result<Vector> {
-    let rows = waves.len() / transform.waves();
-    let numbering = body.numbering();
-    let mut vector = body.vector()?;
-    let mut values = vector.view_mut()?;
+/// Writes waves to a vector of the body, of which each rank takes its own part; where the waves are parted, the first rank has the body.
+fn write<const D: usize>(
+    (waves, rows): (&[Wave<D>], usize),
+    transform: &Transform<D>,
+    body: Option<(&Body<D>, &mut Vector)>,
+) -> Result<()> {
+    let mut to = body.map(|(body, vector)| Ok((body.numbering(), vector.view_mut()?))).transpose()?;
     for row in 0..rows {
-        let of_row = transform.inverse(|wave| &waves[wave * rows + row])?;
+        let of_row = transform.team().collected(transform.inverse(|wave| &waves[wave * rows + row])?);
+        let Some((numbering, values)) = &mut to else { continue };
         for (column, node) in of_row.chunks_exact(D).enumerate() {
             // Nodes run column by column, downward in each, with the clamped one last.
             if let Some(local) = numbering.local((column * (rows + 1) + row) as u32) {
@@ -104,8 +118,7 @@ fn vector<const D: usize>(waves: &[Wave<D>], transform: &Transform<D>, body: &Bo
             }
         }
     }
-    drop(values);
-    Ok(vector)
+    Ok(())
 }
 
 /// How the parts of a body relax.
@@ -125,7 +138,7 @@ impl Relaxations {
     }
 }
 
-/// The whole layer, on the one rank that solves it. Its fields are waves.
+/// The whole layer on the one rank that solves it, or the waves of each of the ranks that share it. Its fields are waves.
 pub struct Layered<const D: usize> {
     /// For output.
     solid: Solid<D>,
@@ -155,10 +168,10 @@ struct Solver<const D: usize> {
 }
 
 impl<const D: usize> Layered<D> {
-    /// At rest.
-    pub fn new(solid: Solid<D>, column: &PeriodicColumn<D>, relaxations: Relaxations) -> Self {
+    /// At rest, parted among the ranks of a team.
+    pub fn new(solid: Solid<D>, column: &PeriodicColumn<D>, relaxations: Relaxations, team: &Rc<Team>) -> Self {
         let count = relaxations.series.len();
-        let transform = column.transform();
+        let transform = Transform::among(column.counts(), team.clone());
         let parts = column.parts(count, &transform);
         let rows = column.cells.len();
         let field = || vec![Wave::zeros(); transform.waves() * rows];
@@ -172,7 +185,7 @@ impl<const D: usize> Layered<D> {
             solvers: Solvers::new(),
             swept: field(),
             work: field(),
-            face: vec![0.0; D * transform.nodes()],
+            face: vec![0.0; D * transform.nodes_here()],
             relaxations,
             account: None,
             transform,
@@ -204,6 +217,13 @@ impl<const D: usize> Layered<D> {
         }
     }
 
+    /// `work` as a vector of the body, where it is. Collective.
+    fn of_body(&self, body: Option<&Body<D>>) -> Result<Option<Vector>> {
+        let mut vector = body.map(Body::vector).transpose()?;
+        write((&self.work, self.rows), &self.transform, body.zip(vector.as_mut()))?;
+        Ok(vector)
+    }
+
     /// work = `displacement` u + sum_i `weights`_i z_i
     fn combine(&mut self, displacement: f64, weights: impl Iterator<Item = f64>) {
         self.work.iter_mut().zip(&self.u).for_each(|(work, u)| *work = u * displacement);
@@ -217,10 +237,11 @@ impl<const D: usize> Inside<D> for Layered<D> {
     fn prepare(&mut self, step: Step) -> Result<()> {
         let factors = self.relaxations.factors(step.dt);
         let Self { relaxations, parts, transform, solvers, .. } = self;
+        let team = transform.team().clone();
         solvers.select(step.dt, || {
             let secant = |series: &Option<Series>| series.as_ref().map_or(1.0, |series| series.secant(&factors));
             let secants: Vec<f64> = relaxations.series.iter().map(secant).collect();
-            let elimination = Elimination::new(&Operator::sum(parts, &secants))?;
+            let elimination = team.agree(Elimination::new(&Operator::sum(parts, &secants)))?;
             let kernel = Kernel::new(elimination.face());
             Ok(Solver { compliance: Compliance::of_periodic_layer(transform.clone(), kernel), elimination })
         })?;
@@ -281,7 +302,8 @@ impl<const D: usize> Inside<D> for Layered<D> {
         if let Some(account) = &self.account {
             account.save(snapshot);
         }
-        let flat = |waves: &[Wave<D>]| waves.iter().flat_map(|wave| wave.as_slice()).copied().collect();
+        let team = self.transform.team();
+        let flat = |waves: &[Wave<D>]| team.collected(waves.iter().flat_map(|wave| wave.as_slice()).copied().collect());
         snapshot.put("waves", flat(&self.u));
         for (index, elongation) in self.elongations.iter().enumerate() {
             snapshot.put(format!("waves-arm-{index}"), flat(elongation));
@@ -296,7 +318,13 @@ impl<const D: usize> Inside<D> for Layered<D> {
         let names = std::iter::once("waves".to_owned()).chain((0..).map(|index| format!("waves-arm-{index}")));
         for (name, waves) in names.zip(std::iter::once(&mut self.u).chain(&mut self.elongations)) {
             let mut flat = vec![0.0; 2 * D * waves.len()];
-            snapshot.fill(&name, &mut flat)?;
+            let per_wave = 2 * D * self.rows;
+            snapshot.fill_part(
+                &name,
+                per_wave * self.transform.first_wave(),
+                per_wave * self.transform.all_waves(),
+                &mut flat,
+            )?;
             for (wave, values) in waves.iter_mut().zip(flat.chunks_exact(2 * D)) {
                 wave.copy_from_slice(values);
             }
@@ -305,22 +333,28 @@ impl<const D: usize> Inside<D> for Layered<D> {
     }
 
     fn fields(&mut self) -> Result<BulkFields> {
-        let mut body = match self.body.take() {
-            Some(body) => body,
-            None => Body::new(SimpleCommunicator::self_comm(), &self.solid)?,
+        let team = self.transform.team().clone();
+        let made = match self.body.take() {
+            None if team.is_first() => Body::new(SimpleCommunicator::self_comm(), &self.solid).map(Some),
+            body => Ok(body),
         };
+        let mut body = team.agree(made)?;
         self.combine(1.0, std::iter::empty());
-        let u = vector(&self.work, &self.transform, &body)?;
+        let u = self.of_body(body.as_ref())?;
         let mut effective = Vec::new();
         for series in self.relaxations.series.clone() {
             match series {
                 Some(series) => self.combine(series.long_term, series.weights.into_iter()),
                 None => self.combine(1.0, std::iter::empty()),
             }
-            effective.push(body.around(&vector(&self.work, &self.transform, &body)?)?);
+            effective.push(self.of_body(body.as_ref())?);
         }
-        let fields = body.fields(&u, &effective);
-        self.body = Some(body);
+        let fields = body.as_mut().zip(u).map_or(Ok(BulkFields::default()), |(body, u)| {
+            let around =
+                effective.iter().flatten().map(|effective| body.around(effective)).collect::<Result<Vec<_>>>()?;
+            body.fields(&u, &around)
+        });
+        self.body = body;
         fields
     }
 }
@@ -331,5 +365,6 @@ fn dot<const D: usize>(a: &[Wave<D>], b: &[Wave<D>], transform: &Transform<D>, r
     let of_wave = |(k, (a, b)): (usize, (&[Wave<D>], &[Wave<D>]))| {
         transform.stands_for(k) * a.iter().zip(b).map(|(a, b)| a.dot(b)).sum::<f64>()
     };
-    waves.map(of_wave).sum::<f64>() / transform.nodes() as f64
+    let [sum] = transform.team().sum([waves.map(of_wave).sum::<f64>()]);
+    sum / transform.nodes() as f64
 }

@@ -33,7 +33,7 @@ pub use transform::{Transform, Wave};
 pub use travelling::{Moving, Travelling};
 pub use waves::{Elimination, Operator};
 
-/// What stands behind the face. All ranks call each method together; the compliance is on rank 0.
+/// What stands behind the face. All ranks call each method together; the compliance is on rank 0, or on all that share the face.
 pub trait Response<const D: usize> {
     /// Makes the rest hold for a step of this length from the accepted state.
     fn prepare(&mut self, step: Step) -> Result<()>;
@@ -41,7 +41,7 @@ pub trait Response<const D: usize> {
     fn free(&mut self, step: Step, free: &mut Vector) -> Result<()>;
     /// c
     fn secant(&self) -> f64;
-    /// C, on rank 0.
+    /// C, on the ranks that have nodes.
     fn compliance(&self) -> Option<&Compliance<D>>;
     /// What the body did: its memory, and its solves.
     fn work(&self) -> Work;
@@ -49,7 +49,7 @@ pub trait Response<const D: usize> {
     fn keep_account(&mut self, layout: &Vector) -> Result<()>;
     /// The energy at the accepted state, where it is kept account of.
     fn energy(&self) -> Option<BodyEnergy>;
-    /// Takes memory and account to the end of an accepted step that ends at `u` under the contact forces `forces` (on rank 0).
+    /// Takes memory and account to the end of an accepted step that ends at `u` under the contact forces `forces` of this rank's nodes.
     fn commit(&mut self, step: Step, u: &Vector, forces: &[f64]) -> Result<()>;
     /// The body, on the rank that has it, where its arms follow the temperature.
     fn tempered(&mut self) -> Option<&mut dyn Tempered> {

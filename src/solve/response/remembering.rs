@@ -8,7 +8,7 @@
 //! ```
 //!
 //! One factorisation per step length. The whole body is on rank 0: at the sizes where a direct solve is the method,
-//! more ranks do not make the solves faster.
+//! more ranks do not make the solves faster. A layer that is solved wave by wave may be parted among all ranks.
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
@@ -22,7 +22,7 @@ use crate::parallel::agree;
 use crate::petsc::{Gather, Step, Vector};
 use crate::snapshot::{NaturalOrder, Snapshot};
 
-/// The body with its memory, whole on one rank.
+/// The body with its memory, whole on one rank or parted among all: then the calls are collective.
 pub trait Inside<const D: usize> {
     /// Makes u_free and C hold for a step of this length from the accepted state.
     fn prepare(&mut self, step: Step) -> Result<()>;
@@ -85,7 +85,7 @@ impl<T> Solvers<T> {
 /// A body with an interior memory.
 pub struct Remembering<const D: usize> {
     comm: SimpleCommunicator,
-    /// On rank 0.
+    /// On rank 0, or on all ranks, each with its part.
     inside: Option<Box<dyn Inside<D>>>,
     /// Length of the step that was prepared, s.
     prepared: Option<f64>,
@@ -94,7 +94,7 @@ pub struct Remembering<const D: usize> {
 }
 
 impl<const D: usize> Remembering<D> {
-    /// At rest; `inside` is on rank 0 of `comm`.
+    /// At rest; `inside` is on rank 0 of `comm`, or on all that share it.
     pub fn new(comm: &SimpleCommunicator, inside: Option<Box<dyn Inside<D>>>) -> Self {
         Self { comm: comm.duplicate(), inside, prepared: None, energy: None }
     }

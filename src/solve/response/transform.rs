@@ -3,6 +3,9 @@
 //! Along the last axis it is that of real numbers, line by line; across the lines that of complex ones, in tiles of a few columns that
 //! stay in the cache: gathered, transformed, multiplied by whatever acts on waves, transformed back and put where they came from.
 //! So a product with a kernel passes four times over what it transforms, and nothing is held twice.
+//!
+//! Of a face that is parted among ranks each has some of the lines of nodes, and some of the columns of waves with all their lines: between
+//! both stands one exchange of all components there, and one back. What acts on waves never leaves the rank that has them.
 
 use std::cell::{Cell, RefCell};
 use std::f64::consts::PI;
@@ -17,6 +20,7 @@ use rustfft::{Fft, FftPlanner};
 
 use crate::error::{Error, Result};
 use crate::mesh::apart;
+use crate::parallel::{Team, parted};
 
 /// w of a row of nodes at one wave vector: (v, u_z) by (real, imaginary) part. Fields of a layer hold, for each wave vector,
 /// one of them per row from the face down.
@@ -33,13 +37,18 @@ const APART: usize = 4;
 /// The transform of a row of nodes: along its last axis that of real numbers, along the one before it that of complex ones.
 ///
 /// Wave (k, l), l = 0 to columns/2 of the last axis and k = 0 to lines - 1 of the other (1 in the plane), is at l times the lines
-/// plus k; what is left out is the complex conjugate of what there is. Clones count together and share their room.
+/// plus k, counted from the first l of this rank; what is left out is the complex conjugate of what there is. Clones count together and
+/// share their room.
 #[derive(Clone)]
 pub struct Transform<const D: usize> {
     /// Axes of the face.
     axes: usize,
     lines: usize,
     columns: usize,
+    /// The lines of nodes of this rank, and the columns of waves of each.
+    here: Range<usize>,
+    starts: Vec<usize>,
+    team: Rc<Team>,
     forward: Arc<dyn RealToComplex<f64>>,
     inverse: Arc<dyn ComplexToReal<f64>>,
     /// Across the lines, there and back.
@@ -50,32 +59,60 @@ pub struct Transform<const D: usize> {
 
 /// Where it is done, kept from one time to the next: memory that is asked for anew is cleared page by page, which takes as long.
 struct Room<const D: usize> {
-    /// Of each component, line by line, those that were ever needed.
-    spectra: [Vec<Complex<f64>>; D],
+    /// Line by line, and in each component by component, the columns of this rank.
+    spectra: Vec<Complex<f64>>,
+    /// Rank by rank the columns of the others, of the lines of this one, in the same order.
+    others: Vec<Complex<f64>>,
     /// Of each component.
     tile: [Vec<Complex<f64>>; D],
     row: Vec<f64>,
+    spectrum: Vec<Complex<f64>>,
     scratch: Vec<Complex<f64>>,
 }
 
+/// The components that pass through the room together.
+#[derive(Clone)]
+struct Passing(Range<usize>);
+
+impl Passing {
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Where a component stands among them.
+    fn place(&self, component: usize) -> usize {
+        component - self.0.start
+    }
+}
+
 impl<const D: usize> Transform<D> {
-    /// For faces with so many nodes along each axis.
+    /// For faces with so many nodes along each axis, all on this rank.
     pub fn new(counts: &[usize]) -> Self {
+        Self::among(counts, Team::alone())
+    }
+
+    /// The same where the lines of nodes are parted among the ranks of a team.
+    pub fn among(counts: &[usize], team: Rc<Team>) -> Self {
         let columns = counts.last().copied().unwrap_or(1);
-        let lines = counts.iter().rev().skip(1).product();
+        let lines: usize = counts.iter().rev().skip(1).product();
         let (mut real, mut complex) = (RealFftPlanner::new(), FftPlanner::new());
         let (forward, inverse) = (real.plan_fft_forward(columns), real.plan_fft_inverse(columns));
         let across = [complex.plan_fft_forward(lines), complex.plan_fft_inverse(lines)];
         let room = Room {
-            spectra: [const { Vec::new() }; D],
+            spectra: Vec::new(),
+            others: Vec::new(),
             tile: [const { Vec::new() }; D],
             row: Vec::new(),
+            spectrum: Vec::new(),
             scratch: Vec::new(),
         };
         Self {
             axes: counts.len(),
             lines,
             columns,
+            here: team.lines().unwrap_or(0..lines),
+            starts: parted(columns / 2 + 1, team.ranks()[0]),
+            team,
             forward,
             inverse,
             across,
@@ -84,14 +121,34 @@ impl<const D: usize> Transform<D> {
         }
     }
 
+    /// The ranks that share the face.
+    pub fn team(&self) -> &Rc<Team> {
+        &self.team
+    }
+
     /// How many nodes there are.
     pub fn nodes(&self) -> usize {
         self.lines * self.columns
     }
 
-    /// How many wave vectors there are.
+    /// How many of them are on this rank.
+    pub fn nodes_here(&self) -> usize {
+        self.here.len() * self.columns
+    }
+
+    /// How many wave vectors there are on this rank.
     pub fn waves(&self) -> usize {
+        self.lines * self.own().len()
+    }
+
+    /// How many there are on all ranks.
+    pub fn all_waves(&self) -> usize {
         self.lines * self.half()
+    }
+
+    /// Which of them is the first of this rank.
+    pub fn first_wave(&self) -> usize {
+        self.lines * self.own().start
     }
 
     /// How many transforms of one component, there or back, were made.
@@ -99,7 +156,7 @@ impl<const D: usize> Transform<D> {
         self.counted.get()
     }
 
-    /// The node that is as far from the first as node i is from node j.
+    /// The node that is as far from the first as node i is from node j, of a face that is not parted.
     pub fn apart(&self, i: usize, j: usize) -> usize {
         apart(&[self.lines, self.columns], i, j)
     }
@@ -107,23 +164,29 @@ impl<const D: usize> Transform<D> {
     /// By what a wave leads from one node to the next along each axis of the face, in the order of the axes.
     pub fn angles(&self, wave: usize) -> [f64; 2] {
         let angle = |k: usize, count: usize| 2.0 * PI * k as f64 / count as f64;
-        let last = angle(wave / self.lines, self.columns);
+        let last = angle(self.column(wave), self.columns);
         if self.axes == 1 { [last, 0.0] } else { [angle(wave % self.lines, self.lines), last] }
     }
 
     /// For how many waves one stands: itself, and its conjugate where that is left out.
     pub fn stands_for(&self, wave: usize) -> f64 {
-        let l = wave / self.lines;
+        let l = self.column(wave);
         if l == 0 || 2 * l == self.columns { 1.0 } else { 2.0 }
+    }
+
+    /// Whether a wave is the uniform one.
+    pub fn is_uniform(&self, wave: usize) -> bool {
+        wave == 0 && self.own().start == 0
     }
 
     /// The waves of the components of each node; a component that is nothing costs nothing.
     pub fn forward(&self, values: &[f64]) -> Result<Vec<Wave<D>>> {
         let mut waves = vec![Wave::zeros(); self.waves()];
-        let mut room = self.room(0..D);
-        let from = some_of(values, 0..D);
-        self.lines_there::<D>(values, &from, &mut room)?;
-        self.across_lines(&mut room, (&from, &[false; D]), |k, w| {
+        let passing = Passing(0..D);
+        let mut room = self.room(&passing);
+        let from = self.some_of(values, 0..D);
+        self.lines_there::<D>(values, (&from, &passing), &mut room)?;
+        self.across_lines((&mut room, &passing), (&from, &[false; D]), |k, w| {
             for (component, c) in w.iter().enumerate() {
                 (waves[k][(component, 0)], waves[k][(component, 1)]) = (c.re, c.im);
             }
@@ -133,16 +196,17 @@ impl<const D: usize> Transform<D> {
 
     /// The components of each node.
     pub fn inverse<'a>(&self, mut waves: impl FnMut(usize) -> &'a Wave<D>) -> Result<Vec<f64>> {
-        let mut values = vec![0.0; D * self.nodes()];
-        let mut room = self.room(0..D);
+        let mut values = vec![0.0; D * self.nodes_here()];
+        let passing = Passing(0..D);
+        let mut room = self.room(&passing);
         let all = [true; D];
-        self.across_lines(&mut room, (&[false; D], &all), |k, w| {
+        self.across_lines((&mut room, &passing), (&[false; D], &all), |k, w| {
             let wave = waves(k);
             for (component, c) in w.iter_mut().enumerate() {
                 *c = Complex::new(wave[(component, 0)], wave[(component, 1)]);
             }
         });
-        self.lines_back::<D>(&mut values, &all, &mut room)?;
+        self.lines_back::<D>(&mut values, (&all, &passing), &mut room)?;
         Ok(values)
     }
 
@@ -155,28 +219,41 @@ impl<const D: usize> Transform<D> {
         (from, to): (Range<usize>, Range<usize>),
         act: impl Fn(usize, &mut Components<D>),
     ) -> Result<()> {
-        let mut room = self.room(from.start.min(to.start)..from.end.max(to.end));
-        let from = some_of(values, from);
+        let passing = Passing(from.start.min(to.start)..from.end.max(to.end));
+        let mut room = self.room(&passing);
+        let from = self.some_of(values, from);
         if from == [false; D] {
             values.chunks_exact_mut(D).for_each(|node| node[to.clone()].fill(0.0));
             return Ok(());
         }
         let to = std::array::from_fn(|component| to.contains(&component));
-        self.lines_there::<D>(values, &from, &mut room)?;
-        self.across_lines(&mut room, (&from, &to), act);
-        self.lines_back::<D>(values, &to, &mut room)
+        self.lines_there::<D>(values, (&from, &passing), &mut room)?;
+        self.across_lines((&mut room, &passing), (&from, &to), act);
+        self.lines_back::<D>(values, (&to, &passing), &mut room)
     }
 
     /// The same of a list of last components alone: each wave times a number.
     pub fn filter_last(&self, values: &mut [f64], factor: impl Fn(usize) -> f64) -> Result<()> {
-        if values.iter().all(|value| *value == 0.0) {
+        if !self.team.any(values.iter().any(|value| *value != 0.0)) {
             return Ok(());
         }
         let last = std::array::from_fn(|component| component + 1 == D);
-        let mut room = self.room(D - 1..D);
-        self.lines_there::<1>(values, &last, &mut room)?;
-        self.across_lines(&mut room, (&last, &last), |wave, w| w[D - 1] *= factor(wave));
-        self.lines_back::<1>(values, &last, &mut room)
+        let passing = Passing(D - 1..D);
+        let mut room = self.room(&passing);
+        self.lines_there::<1>(values, (&last, &passing), &mut room)?;
+        self.across_lines((&mut room, &passing), (&last, &last), |wave, w| w[D - 1] *= factor(wave));
+        self.lines_back::<1>(values, (&last, &passing), &mut room)
+    }
+
+    /// The columns of waves of this rank.
+    fn own(&self) -> Range<usize> {
+        let [_, rank] = self.team.ranks();
+        self.starts[rank]..self.starts[rank + 1]
+    }
+
+    /// The column of a wave among those of all ranks.
+    fn column(&self, wave: usize) -> usize {
+        self.own().start + wave / self.lines
     }
 
     fn half(&self) -> usize {
@@ -188,20 +265,37 @@ impl<const D: usize> Transform<D> {
         if self.lines > 1 { self.lines + APART } else { 1 }
     }
 
-    /// The room, with places for so many components.
-    fn room(&self, components: Range<usize>) -> std::cell::RefMut<'_, Room<D>> {
+    /// Which of these components are not nothing, on any rank.
+    fn some_of(&self, values: &[f64], components: Range<usize>) -> [bool; D] {
+        let some = |component: usize| values.iter().skip(component).step_by(D).any(|value| *value != 0.0);
+        let mine: [bool; D] = std::array::from_fn(|component| components.contains(&component) && some(component));
+        match self.team.is_parted() {
+            true => self.team.sum(mine.map(|some| f64::from(u8::from(some)))).map(|count| count > 0.0),
+            false => mine,
+        }
+    }
+
+    /// The room, with places for the components.
+    fn room(&self, passing: &Passing) -> std::cell::RefMut<'_, Room<D>> {
         let mut room = self.room.borrow_mut();
         let nothing = Complex::default();
-        for component in components {
-            room.spectra[component].resize(self.waves(), nothing);
-            room.tile[component].resize(TILE * self.stride(), nothing);
+        let grow = |list: &mut Vec<Complex<f64>>, length: usize| {
+            if list.len() < length {
+                list.resize(length, nothing);
+            }
+        };
+        grow(&mut room.spectra, passing.count() * self.waves());
+        if self.team.is_parted() {
+            grow(&mut room.others, passing.count() * self.here.len() * (self.half() - self.own().len()));
+            grow(&mut room.spectrum, self.half());
         }
+        passing.0.clone().for_each(|component| grow(&mut room.tile[component], TILE * self.stride()));
         let scratch = [self.forward.get_scratch_len(), self.inverse.get_scratch_len()]
             .into_iter()
             .chain(self.across.iter().map(|across| across.get_inplace_scratch_len()))
             .max()
             .unwrap_or(0);
-        room.scratch.resize(scratch, nothing);
+        grow(&mut room.scratch, scratch);
         room.row.resize(self.columns, 0.0);
         room
     }
@@ -211,38 +305,107 @@ impl<const D: usize> Transform<D> {
         self.counted.set(self.counted.get() + components.iter().filter(|component| **component).count());
     }
 
+    /// Where in `others` the columns of each rank stand, and in `spectra` the lines of each.
+    fn parts(&self, passing: &Passing) -> [Vec<Range<usize>>; 2] {
+        let [ranks, rank] = self.team.ranks();
+        let (count, own) = (passing.count(), self.own().len());
+        let mut first = 0;
+        let columns = (0..ranks).map(|other| {
+            let width = if other == rank { 0 } else { self.starts[other + 1] - self.starts[other] };
+            let begins = first;
+            first += width * count * self.here.len();
+            begins..first
+        });
+        let columns = columns.collect();
+        let lines = |other: usize| {
+            let lines = self.team.lines_of(other);
+            lines.start * count * own..lines.end * count * own
+        };
+        [columns, (0..ranks).map(lines).collect()]
+    }
+
+    /// The pieces of a line of waves, rank by rank: which columns, and where they stand in `others`; none of this rank, whose stand in
+    /// `spectra`.
+    fn pieces<'a>(
+        &'a self,
+        (line, component): (usize, usize),
+        passing: &'a Passing,
+        columns: &'a [Range<usize>],
+    ) -> impl Iterator<Item = (Range<usize>, Option<usize>)> + 'a {
+        let [_, rank] = self.team.ranks();
+        columns.iter().enumerate().map(move |(other, place)| {
+            let range = self.starts[other]..self.starts[other + 1];
+            let at = (line * passing.count() + passing.place(component)) * range.len();
+            (range, (other != rank).then_some(place.start + at))
+        })
+    }
+
     /// Along each line, of the last `S` components to a node.
-    fn lines_there<const S: usize>(&self, values: &[f64], from: &[bool; D], room: &mut Room<D>) -> Result<()> {
+    fn lines_there<const S: usize>(
+        &self,
+        values: &[f64],
+        (from, passing): (&[bool; D], &Passing),
+        room: &mut Room<D>,
+    ) -> Result<()> {
         self.count(from);
-        let half = self.half();
-        let Room { spectra, row, scratch, .. } = room;
+        let (width, parted) = (self.own().len(), self.team.is_parted());
+        let Room { spectra, others, row, spectrum, scratch, .. } = room;
         let scratch = &mut scratch[..self.forward.get_scratch_len()];
+        let [columns, lines] = if parted { self.parts(passing) } else { Default::default() };
         for (line, nodes) in values.chunks_exact(S * self.columns).enumerate() {
             for component in (0..D).filter(|&component| from[component]) {
                 let place = component + S - D;
                 row.iter_mut().zip(nodes.chunks_exact(S)).for_each(|(row, node)| *row = node[place]);
-                let spectrum = &mut spectra[component][line * half..][..half];
+                let own = ((self.here.start + line) * passing.count() + passing.place(component)) * width;
+                let own = &mut spectra[own..][..width];
+                if !parted {
+                    self.forward.process_with_scratch(row, own, scratch).map_err(transform_failed)?;
+                    continue;
+                }
                 self.forward.process_with_scratch(row, spectrum, scratch).map_err(transform_failed)?;
+                for (range, at) in self.pieces((line, component), passing, &columns) {
+                    let to = at.map_or(&mut own[..], |at| &mut others[at..][..range.len()]);
+                    to.copy_from_slice(&spectrum[range]);
+                }
             }
         }
+        self.team.exchange((others, &columns), (spectra, &lines));
         Ok(())
     }
 
     /// Back along each line.
-    fn lines_back<const S: usize>(&self, values: &mut [f64], to: &[bool; D], room: &mut Room<D>) -> Result<()> {
+    fn lines_back<const S: usize>(
+        &self,
+        values: &mut [f64],
+        (to, passing): (&[bool; D], &Passing),
+        room: &mut Room<D>,
+    ) -> Result<()> {
         self.count(to);
         let (half, share) = (self.half(), 1.0 / self.nodes() as f64);
-        let Room { spectra, row, scratch, .. } = room;
+        let (width, parted) = (self.own().len(), self.team.is_parted());
+        let Room { spectra, others, row, spectrum, scratch, .. } = room;
         let scratch = &mut scratch[..self.inverse.get_scratch_len()];
+        let [columns, lines] = if parted { self.parts(passing) } else { Default::default() };
+        self.team.exchange((spectra, &lines), (others, &columns));
         for (line, nodes) in values.chunks_exact_mut(S * self.columns).enumerate() {
             for component in (0..D).filter(|&component| to[component]) {
-                let spectrum = &mut spectra[component][line * half..][..half];
+                let own = ((self.here.start + line) * passing.count() + passing.place(component)) * width;
+                let own = &mut spectra[own..][..width];
+                let whole = if parted {
+                    for (range, at) in self.pieces((line, component), passing, &columns) {
+                        let from = at.map_or(&own[..], |at| &others[at..][..range.len()]);
+                        spectrum[range].copy_from_slice(from);
+                    }
+                    &mut spectrum[..]
+                } else {
+                    own
+                };
                 // Real but for round-off.
-                spectrum[0].im = 0.0;
+                whole[0].im = 0.0;
                 if self.columns.is_multiple_of(2) {
-                    spectrum[half - 1].im = 0.0;
+                    whole[half - 1].im = 0.0;
                 }
-                self.inverse.process_with_scratch(spectrum, row, scratch).map_err(transform_failed)?;
+                self.inverse.process_with_scratch(whole, row, scratch).map_err(transform_failed)?;
                 let place = component + S - D;
                 nodes.chunks_exact_mut(S).zip(row.iter()).for_each(|(node, row)| node[place] = row * share);
             }
@@ -254,20 +417,21 @@ impl<const D: usize> Transform<D> {
     /// components that do not come from anywhere it is given nothing.
     fn across_lines(
         &self,
-        room: &mut Room<D>,
+        (room, passing): (&mut Room<D>, &Passing),
         (from, to): (&[bool; D], &[bool; D]),
         mut act: impl FnMut(usize, &mut Components<D>),
     ) {
-        let (lines, half, stride) = (self.lines, self.half(), self.stride());
+        let (lines, own, stride) = (self.lines, self.own().len(), self.stride());
         let Room { spectra, tile, scratch, .. } = room;
         let [there, back] = &self.across;
-        for first in (0..half).step_by(TILE) {
-            let width = TILE.min(half - first);
+        let length = passing.count() * own;
+        for first in (0..own).step_by(TILE) {
+            let width = TILE.min(own - first);
             for component in (0..D).filter(|&component| from[component]) {
-                let tile = &mut tile[component];
-                for (line, spectrum) in spectra[component].chunks_exact(half).enumerate() {
+                let (tile, at) = (&mut tile[component], passing.place(component) * own + first);
+                for (line, spectrum) in spectra.chunks_exact(length).take(lines).enumerate() {
                     let places = tile[line..].iter_mut().step_by(stride);
-                    places.zip(&spectrum[first..][..width]).for_each(|(place, c)| *place = *c);
+                    places.zip(&spectrum[at..][..width]).for_each(|(place, c)| *place = *c);
                 }
                 if lines > 1 {
                     let scratch = &mut scratch[..there.get_inplace_scratch_len()];
@@ -285,15 +449,15 @@ impl<const D: usize> Transform<D> {
                 }
             }
             for component in (0..D).filter(|&component| to[component]) {
-                let tile = &mut tile[component];
+                let (tile, at) = (&mut tile[component], passing.place(component) * own + first);
                 if lines > 1 {
                     let scratch = &mut scratch[..back.get_inplace_scratch_len()];
                     let columns = tile.chunks_mut(stride).take(width);
                     columns.for_each(|column| back.process_with_scratch(&mut column[..lines], scratch));
                 }
-                for (line, spectrum) in spectra[component].chunks_exact_mut(half).enumerate() {
+                for (line, spectrum) in spectra.chunks_exact_mut(length).take(lines).enumerate() {
                     let places = tile[line..].iter().step_by(stride);
-                    spectrum[first..][..width].iter_mut().zip(places).for_each(|(c, place)| *c = *place);
+                    spectrum[at..][..width].iter_mut().zip(places).for_each(|(c, place)| *c = *place);
                 }
             }
         }
@@ -308,12 +472,6 @@ fn wave(along: bool, c: Complex<f64>) -> Complex<f64> {
 /// u = i v.
 fn node(along: bool, c: Complex<f64>) -> Complex<f64> {
     if along { Complex::new(-c.im, c.re) } else { c }
-}
-
-/// Which of these components are not nothing.
-fn some_of<const D: usize>(values: &[f64], components: Range<usize>) -> [bool; D] {
-    let some = |component: usize| values.iter().skip(component).step_by(D).any(|value| *value != 0.0);
-    std::array::from_fn(|component| components.contains(&component) && some(component))
 }
 
 fn transform_failed(error: realfft::FftError) -> Error {

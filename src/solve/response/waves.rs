@@ -36,6 +36,8 @@ pub use vibration::Vibration;
 /// The stiffness of a layer, or a part of it.
 pub struct Operator<const D: usize> {
     rows: usize,
+    /// Whether the first wave vector is the uniform one.
+    uniform: bool,
     /// Per wave vector, per row.
     blocks: Vec<Row<D>>,
 }
@@ -51,7 +53,7 @@ impl<const D: usize> Operator<D> {
     /// Of columns of the given cells, from the face down; the lower side of the last one is clamped.
     pub fn new(cells: &[Blocks<D>], transform: &Transform<D>) -> Self {
         let blocks = (0..transform.waves()).flat_map(|k| rows_of(cells, &transform.angles(k)).0).collect();
-        Self { rows: cells.len(), blocks }
+        Self { rows: cells.len(), uniform: transform.is_uniform(0), blocks }
     }
 
     /// The same with the lower side of the last cell free, which is one row more.
@@ -61,7 +63,8 @@ impl<const D: usize> Operator<D> {
             rows.push(Row { diagonal, coupling: SMatrix::zeros() });
             rows
         };
-        Self { rows: cells.len() + 1, blocks: (0..transform.waves()).flat_map(of_wave).collect() }
+        let blocks = (0..transform.waves()).flat_map(of_wave).collect();
+        Self { rows: cells.len() + 1, uniform: transform.is_uniform(0), blocks }
     }
 
     /// Rows of each wave vector.
@@ -79,7 +82,7 @@ impl<const D: usize> Operator<D> {
                 sum.coupling += row.coupling * factor;
             }
         }
-        Self { rows: parts[0].rows, blocks }
+        Self { rows: parts[0].rows, uniform: parts[0].uniform, blocks }
     }
 
     /// load -= K w
@@ -126,7 +129,7 @@ impl<const D: usize> Elimination<D> {
         let rows = operator.rows;
         let mut pivots = Vec::with_capacity(operator.blocks.len());
         for (k, blocks) in operator.blocks.chunks_exact(rows).enumerate() {
-            pivots.extend(eliminated(blocks, in_series && k == 0)?);
+            pivots.extend(eliminated(blocks, in_series && operator.uniform && k == 0)?);
         }
         Ok(Self { rows, pivots })
     }
@@ -179,7 +182,8 @@ pub fn face_compliance<const D: usize>(
     cells: &[Blocks<D>],
     transform: &Transform<D>,
 ) -> Result<Vec<SMatrix<f64, D, D>>> {
-    let of_wave = |k: usize| Ok(eliminated(&rows_of(cells, &transform.angles(k)).0, k == 0)?[0].inverse);
+    let of_wave =
+        |k: usize| Ok(eliminated(&rows_of(cells, &transform.angles(k)).0, transform.is_uniform(k))?[0].inverse);
     (0..transform.waves()).map(of_wave).collect()
 }
 

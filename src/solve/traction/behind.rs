@@ -6,7 +6,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::super::accepted::AcceptedFace;
 use super::super::response::Compliance;
-use super::{Moduli, Site};
+use super::{Moduli, Site, Sites};
 use crate::error::Result;
 use crate::friction::{Circumstances, Law};
 use crate::interface::{Interface, Point};
@@ -161,6 +161,7 @@ impl<const D: usize> Behind<'_, D> {
     /// How steeply friction may fall with the slip, Pa/m, at a point by what it has slid and its temperature, under the highest pressure there is.
     fn falls(&self, dt: f64) -> impl Fn(f64, f64) -> f64 {
         let pressure = self.interface.states().iter().map(|state| state.pressure).fold(0.0, f64::max);
+        let [pressure] = self.interface.team().most([pressure]);
         let law = self.interface.friction();
         let at = move |slid, temperature| Circumstances { pressure, dt, resolution: 0.0, slid, temperature };
         let fall = move |slid, warm| law.map_or(0.0, |law| law.strength().steepest_fall(at(slid, warm)));
@@ -170,8 +171,8 @@ impl<const D: usize> Behind<'_, D> {
     }
 
     /// The points in a step to `placement`, where the profile was placed, from the accepted face; `free` is what the nodes do
-    /// without contact, m.
-    pub fn sites(&self, accepted: &AcceptedFace<D>, placement: Placement, free: &[f64]) -> Vec<Site<D>> {
+    /// without contact, m. Collective.
+    pub fn sites(&self, accepted: &AcceptedFace<D>, placement: Placement, free: &[f64]) -> Sites<D> {
         let interface = self.interface;
         let Placement { approach, dt, .. } = placement;
         let way = placement.way();
@@ -203,6 +204,7 @@ impl<const D: usize> Behind<'_, D> {
                 ],
             }
         };
-        interface.points().all().iter().enumerate().map(site).collect()
+        let all = interface.points().all().iter().enumerate().map(site).collect();
+        Sites::new(all, interface.team().clone())
     }
 }

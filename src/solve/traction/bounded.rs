@@ -11,8 +11,9 @@
 //! to be least, a step along the projected gradient, which cannot, takes its place. An iteration is four transforms of one component,
 //! or six where a pressure was set to zero; the residual is told in the norm of Newton's method, so that both stop at the same place.
 
-use super::{Behind, Outcome, Site};
+use super::{Behind, Outcome, Sites};
 use crate::error::{Error, Result};
+use crate::parallel::Team;
 use crate::solve::response::{Kernel, Transform};
 
 /// Iterations at most; Newton's method begins it anew where they leave too much.
@@ -25,6 +26,7 @@ const RISE: f64 = 1e-3;
 /// The least squares of a step: the same at all points of a flat periodic face.
 struct Face<'a, const D: usize> {
     transform: &'a Transform<D>,
+    team: &'a Team,
     kernel: &'a Kernel<D>,
     /// Of a traction, what a force of the compliance is.
     per_traction: f64,
@@ -36,9 +38,9 @@ struct Face<'a, const D: usize> {
 }
 
 /// The pressures where the laws of the normal direction hold, from those of a state: until the norm of the residual is less than the
-/// `tolerance` times that of the tractions, or times `scale` where that is larger, or round-off.
+/// `tolerance` times that of the tractions, or times `scale` where that is larger, or round-off. Collective.
 pub fn pressures<const D: usize>(
-    sites: &[Site<D>],
+    sites: &Sites<D>,
     from: &Outcome<D>,
     behind: &Behind<'_, D>,
     (penalty, tolerance, scale): (Option<f64>, f64, f64),
@@ -51,6 +53,7 @@ pub fn pressures<const D: usize>(
     let rho = site.moduli.normal;
     let face = Face {
         transform,
+        team: transform.team(),
         kernel,
         per_traction: site.weight / behind.secant,
         give: penalty.map_or(0.0, f64::recip),
@@ -65,7 +68,7 @@ pub fn pressures<const D: usize>(
     let mut last: Option<f64> = None;
     for _ in 0..MOST {
         let (left, size) = face.norms(&p, &r);
-        if left <= (ENOUGH * tolerance * size.max(scale)).max(from.noise(sites)) {
+        if left <= (ENOUGH * tolerance * size.max(scale)).max(from.noise()) {
             break;
         }
         let presses = |p: f64, r: f64| p > 0.0 || r > 0.0;
@@ -76,6 +79,7 @@ pub fn pressures<const D: usize>(
             *z = if presses(p[i], r[i]) { *z } else { 0.0 };
             (now, turned, kept) = (now + *z * r[i], turned + *z * (r[i] - before[i]), kept + d[i] * r[i]);
         }
+        let [now, turned, kept] = face.team.sum([now, turned, kept]);
         let share = last.map_or(0.0, |last| (turned / last).max(0.0));
         let share = if now + share * kept > 0.0 { share } else { 0.0 };
         for (i, d) in d.iter_mut().enumerate() {
@@ -85,6 +89,7 @@ pub fn pressures<const D: usize>(
         face.yield_under(&mut q)?;
         let (fall, bend) =
             d.iter().zip(&q).zip(&r).fold((0.0, 0.0), |(fall, bend), ((d, q), r)| (fall + d * r, bend + d * q));
+        let [fall, bend] = face.team.sum([fall, bend]);
         if !(bend > 0.0 && fall > 0.0) {
             break;
         }
@@ -100,13 +105,13 @@ pub fn pressures<const D: usize>(
 
 impl<const D: usize> Face<'_, D> {
     /// p and r of a state.
-    fn begin(&self, sites: &[Site<D>], from: &Outcome<D>) -> Result<(Vec<f64>, Vec<f64>)> {
+    fn begin(&self, sites: &Sites<D>, from: &Outcome<D>) -> Result<(Vec<f64>, Vec<f64>)> {
         let told = from.tractions.iter().zip(sites).map(|(t, site)| -site.normal.dot(t));
         let (mut p, mut pulls): (Vec<f64>, Vec<f64>) = told.map(|p| (p.max(0.0), p.min(0.0))).unzip();
         let overlaps = from.motions.iter().zip(sites).map(|(motion, site)| site.relative(motion).overlap);
         let mut r: Vec<f64> =
             overlaps.zip(p.iter().zip(&pulls)).map(|(o, (p, pull))| o - self.give * (p + pull)).collect();
-        if pulls.iter().any(|pull| *pull != 0.0) {
+        if self.team.any(pulls.iter().any(|pull| *pull != 0.0)) {
             self.yield_under(&mut pulls)?;
             r.iter_mut().zip(&pulls).for_each(|(r, pull)| *r += pull);
         }
@@ -122,6 +127,7 @@ impl<const D: usize> Face<'_, D> {
             left += (p - met) * (p - met);
             size += p * p;
         }
+        let [left, size] = self.team.sum([left, size]);
         ((self.weight * left).sqrt(), (self.weight * size).sqrt())
     }
 
@@ -141,7 +147,7 @@ impl<const D: usize> Face<'_, D> {
 
     /// p and r a step along d; `q` is (C + 1/alpha) d and may be overwritten. Whether the directions go on from here.
     fn advance(&self, (p, r): (&mut [f64], &mut [f64]), (d, q): (&[f64], &mut [f64]), length: f64) -> Result<bool> {
-        if p.iter().zip(d).all(|(p, d)| p + length * d >= 0.0) {
+        if self.team.all_say(p.iter().zip(d).all(|(p, d)| p + length * d >= 0.0)) {
             for (((p, r), d), q) in p.iter_mut().zip(r.iter_mut()).zip(d).zip(q.iter()) {
                 (*p, *r) = (*p + length * d, *r - length * q);
             }
@@ -156,12 +162,14 @@ impl<const D: usize> Face<'_, D> {
             q[i] = r[i] - length * q[i] - change;
             (rise, fall) = (rise - 0.5 * gone * (r[i] + q[i]), fall + (gone * r[i]).abs());
         }
+        let [rise, fall] = self.team.sum([rise, fall]);
         if rise <= RISE * fall {
             p.iter_mut().zip(d).for_each(|(p, d)| *p = (*p + length * d).max(0.0));
             r.copy_from_slice(q);
             return Ok(true);
         }
         let softest = (0..self.kernel.len()).map(|wave| self.compliance(wave)).fold(0.0, f64::max);
+        let [softest] = self.team.most([softest]);
         let mut gone: Vec<f64> = p.iter().zip(r.iter()).map(|(p, r)| (p + r / softest).max(0.0) - p).collect();
         p.iter_mut().zip(&gone).for_each(|(p, gone)| *p += gone);
         self.yield_under(&mut gone)?;

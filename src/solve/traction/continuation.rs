@@ -11,7 +11,7 @@ use nalgebra::SVector;
 use super::fold::branches;
 use super::search::{Operator, Outcome, settle};
 use super::sweep::sweep;
-use super::{Laws, Site};
+use super::{Laws, Sites};
 use crate::error::Result;
 use crate::friction::{Circumstances, ElasticSlip, Lasting, Law, Share, Strength};
 
@@ -32,7 +32,7 @@ const SWEEPS: usize = 50;
 
 /// Tractions near where the laws hold, from others.
 pub fn start<const D: usize>(
-    sites: &[Site<D>],
+    sites: &Sites<D>,
     from: Outcome<D>,
     laws: Laws<'_>,
     operator: Operator<'_, D>,
@@ -42,8 +42,8 @@ pub fn start<const D: usize>(
         return Ok(found);
     }
     let direct = settle(sites, from.clone(), laws, operator, DIRECT)?;
-    let largest = from.size(sites);
-    let holds = |at: &Outcome<D>| at.norm(sites) <= (tolerance * at.size(sites).max(largest)).max(at.noise(sites));
+    let largest = from.size();
+    let holds = |at: &Outcome<D>| at.norm() <= (tolerance * at.size().max(largest)).max(at.noise());
     if holds(&direct) {
         return Ok(direct);
     }
@@ -54,7 +54,7 @@ pub fn start<const D: usize>(
             1 => from_softer_laws(sites, from.clone(), laws, operator)?,
             _ => settle(sites, sweep(sites, at, laws, operator.0, SWEEPS), laws, operator, EACH)?,
         };
-        if at.norm(sites) < best.norm(sites) {
+        if at.norm() < best.norm() {
             best = at.clone();
         }
         if holds(&best) {
@@ -66,7 +66,7 @@ pub fn start<const D: usize>(
 
 /// Through softer laws, met one after the other.
 fn from_softer_laws<const D: usize>(
-    sites: &[Site<D>],
+    sites: &Sites<D>,
     mut at: Outcome<D>,
     laws: Laws<'_>,
     operator: Operator<'_, D>,

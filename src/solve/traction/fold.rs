@@ -6,7 +6,7 @@
 //! follows depends on nothing but the step, and it is refused.
 
 use super::search::{Operator, Outcome, settle};
-use super::{Answer, Laws, Site};
+use super::{Answer, Laws, Site, Sites};
 use crate::error::Result;
 use crate::friction::{Bound, Circumstances, Lasting, Law, Share, Strength};
 
@@ -18,7 +18,7 @@ const LEFT: f64 = 0.95;
 
 /// A state near the given one by sticking, or else by slipping fast, where laws hold; none where neither does.
 pub fn branches<const D: usize>(
-    sites: &[Site<D>],
+    sites: &Sites<D>,
     from: &Outcome<D>,
     laws: Laws<'_>,
     operator: Operator<'_, D>,
@@ -34,7 +34,7 @@ pub fn branches<const D: usize>(
         let first = from.clone().under(sites, Laws { friction: Some(&frozen), ..laws });
         let first = settle(sites, first, Laws { friction: Some(&frozen), ..laws }, operator, EACH)?;
         let found = settle(sites, first.under(sites, laws), laws, operator, EACH)?;
-        let holds = found.norm(sites) <= tolerance * found.size(sites).max(from.size(sites));
+        let holds = found.norm() <= tolerance * found.size().max(from.size());
         if holds && (rate == 0.0 || stays(sites, &found, laws)) {
             return Ok(Some(found));
         }
@@ -43,9 +43,9 @@ pub fn branches<const D: usize>(
 }
 
 /// Whether a state that was met is one that the step jumped to and that nothing but the step decides. `usual` is what a point was
-/// to slip in the step, m, `before` the shears that were accepted, Pa.
+/// to slip in the step, m, `before` the shears that were accepted, Pa. Collective.
 pub fn jumped<const D: usize>(
-    sites: &[Site<D>],
+    sites: &Sites<D>,
     to: &Outcome<D>,
     laws: Laws<'_>,
     (usual, before): (f64, &[f64]),
@@ -59,18 +59,20 @@ pub fn jumped<const D: usize>(
         sheared += site.weight * answer.shear.norm();
         was += site.weight * before;
     }
+    let [slipped, pressed, sheared, was] = sites.team().sum([slipped, pressed, sheared, was]);
     slipped > FARTHER * usual * pressed && sheared < LEFT * was && !stays(sites, to, laws)
 }
 
 /// Whether the face would stay in fast slip: friction rises again there, or a mass holds the indenter.
-fn stays<const D: usize>(sites: &[Site<D>], at: &Outcome<D>, laws: Laws<'_>) -> bool {
+fn stays<const D: usize>(sites: &Sites<D>, at: &Outcome<D>, laws: Laws<'_>) -> bool {
     let Some(law) = laws.friction else { return true };
     let rise = |(site, answer): (&Site<D>, &Answer<D>)| {
         site.weight * law.bound(site.circumstances(answer.pressure, laws), answer.slip.norm()).by_slip
     };
     let inert = laws.held.supports[1..].iter().flatten().any(|support| support.inert);
     let slipping = sites.iter().zip(&at.answers).filter(|(_, answer)| answer.active && !answer.sticks);
-    inert || slipping.map(rise).sum::<f64>() > 0.0
+    let [risen] = sites.team().sum([slipping.map(rise).sum::<f64>()]);
+    inert || risen > 0.0
 }
 
 /// A law whose strength is that of a rate, m/s, whatever a point slips.

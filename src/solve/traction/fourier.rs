@@ -17,6 +17,7 @@ use rustfft::num_complex::Complex;
 use super::super::response::{Compliance, Kernel};
 use super::linear::Linearised;
 use crate::error::Result;
+use crate::parallel::Team;
 
 /// How much of what friction gives way by on average is given to all points: with a mean of reciprocals in place of the
 /// reciprocal of a mean, less than all of it.
@@ -38,18 +39,19 @@ pub struct Fourier {
 
 impl Fourier {
     /// For the points of a flat face with equal `weight`s, and what their laws are; none where the compliance is not that of a
-    /// periodic layer.
+    /// periodic layer. Collective.
     pub fn new<const D: usize>(
         compliance: &Compliance<D>,
         secant: f64,
         points: &[Linearised<D>],
         weight: f64,
     ) -> Option<Self> {
-        compliance.waves()?;
+        let (transform, _) = compliance.waves()?;
+        let team = transform.team();
         let per_traction = weight / secant;
         let active = || points.iter().filter(|point| point.active);
-        let [soft, stiff] = normal(active);
-        let rho = active().map(modulus).fold(0.0, f64::max);
+        let [soft, stiff] = normal(team, active);
+        let [rho] = team.most([active().map(modulus).fold(0.0, f64::max)]);
         // Along the slip and, in space, across it, where a point that slides is soft too.
         let shares = || {
             active()
@@ -58,8 +60,9 @@ impl Fourier {
         };
         let (give, square) =
             shares().fold((0.0, 0.0), |(give, square), (th, slack)| (give + th * slack, square + th * th));
+        let [give, square] = team.sum([give, square]);
         // Where all slides there is next to nothing to transform.
-        let sticks = shares().any(|(th, _)| th > LEAST_SHARE);
+        let sticks = team.any(shares().any(|(th, _)| th > LEAST_SHARE));
         let kappa = if sticks { SOFTNESS * give / square } else { 0.0 };
         Some(Self { soft, stiff: stiff * per_traction, grip: rho * per_traction, kappa, sticks })
     }
@@ -122,16 +125,19 @@ impl Fourier {
 }
 
 /// 1 - theta and theta rho_n: the same of all points but where they wear, each as much as it slips; then their means.
-fn normal<'a, const D: usize, I: Iterator<Item = &'a Linearised<D>>>(active: impl Fn() -> I) -> [f64; 2] {
+fn normal<'a, const D: usize, I: Iterator<Item = &'a Linearised<D>>>(team: &Team, active: impl Fn() -> I) -> [f64; 2] {
     let wears = active().any(|point| point.wearing != [0.0; 2]);
-    match active().next() {
-        None => [1.0, 0.0],
-        Some(point) if !wears => [point.soft, point.stiff],
-        _ => {
-            let (soft, stiff) = active().fold((0.0, 0.0), |sum, point| (sum.0 + point.soft, sum.1 + point.stiff));
-            [soft, stiff].map(|sum| sum / active().count() as f64)
-        }
+    let first = active().next().map_or([f64::NEG_INFINITY; 2], |point| [point.soft, point.stiff]);
+    let [soft, stiff, wears] = team.most([first[0], first[1], f64::from(u8::from(wears))]);
+    if soft == f64::NEG_INFINITY {
+        return [1.0, 0.0];
     }
+    if wears == 0.0 {
+        return [soft, stiff];
+    }
+    let (soft, stiff) = active().fold((0.0, 0.0), |sum, point| (sum.0 + point.soft, sum.1 + point.stiff));
+    let [soft, stiff, count] = team.sum([soft, stiff, active().count() as f64]);
+    [soft / count, stiff / count]
 }
 
 /// Th; none where friction falls.

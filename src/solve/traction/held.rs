@@ -25,7 +25,7 @@ use std::fmt;
 use nalgebra::{Matrix3, SVector, Vector2, Vector3};
 
 use super::linear::{Linearised, product};
-use super::{Outcome, Site, area};
+use super::{Outcome, Site, Sites};
 use crate::error::Result;
 use crate::loading::{DIRECTIONS, Support};
 use crate::profile::Height;
@@ -67,11 +67,6 @@ pub fn up<const D: usize>() -> SVector<f64, D> {
     SVector::from_fn(|i, _| f64::from(u8::from(i + 1 == D)))
 }
 
-/// kappa: the mean of the points' own moduli.
-pub fn modulus<const D: usize>(sites: &[Site<D>]) -> f64 {
-    sites.iter().map(|site| site.moduli.normal).sum::<f64>() / sites.len().max(1) as f64
-}
-
 /// How a point moves against an indenter that moves by `shift`, but for what the profile makes of it.
 pub fn against<const D: usize>(site: &Site<D>, shift: &SVector<f64, D>) -> SVector<f64, D> {
     passed(&site.normal, shift)
@@ -105,26 +100,33 @@ impl Held<'_> {
         before.iter().zip(&after).map(change).collect()
     }
 
-    /// R in each direction, N or N/m; 0 where the place is given.
-    pub fn unbalance<const D: usize>(
+    /// What the contact has against each direction, N or N/m, on this rank; 0 where the place is given.
+    pub fn forces<const D: usize>(
         &self,
         sites: &[Site<D>],
         (tractions, over): (&[SVector<f64, D>], &[Over]),
-        shift: &SVector<f64, D>,
     ) -> [f64; DIRECTIONS] {
+        let mut forces = [0.0; DIRECTIONS];
+        for (direction, _) in self.directions() {
+            let way = axis::<D>(direction);
+            forces[direction] = force_along(sites, tractions, |i| column(&sites[i].normal, &way, over[i].slope));
+        }
+        forces
+    }
+
+    /// R in each direction, N or N/m, of what the contact has against it; 0 where the place is given.
+    pub fn unbalance<const D: usize>(&self, met: [f64; DIRECTIONS], shift: &SVector<f64, D>) -> [f64; DIRECTIONS] {
         let mut unbalance = [0.0; DIRECTIONS];
         for (direction, Support { force, stiffness, .. }) in self.directions() {
-            let way = axis::<D>(direction);
-            let met: f64 = force_along(sites, tractions, |i| column(&sites[i].normal, &way, over[i].slope));
-            unbalance[direction] = met - (force - stiffness * shift.dot(&way));
+            unbalance[direction] = met[direction] - (force - stiffness * shift.dot(&axis::<D>(direction)));
         }
         unbalance
     }
 
     /// What round-off leaves of the equations, over the root of the area.
-    pub fn noise<const D: usize>(&self, sites: &[Site<D>]) -> f64 {
+    pub fn noise<const D: usize>(&self, sites: &Sites<D>) -> f64 {
         let sizes = self.directions().map(|(_, support)| support.size * support.size);
-        f64::EPSILON * (sizes.sum::<f64>() / area(sites)).sqrt()
+        f64::EPSILON * (sizes.sum::<f64>() / sites.area()).sqrt()
     }
 }
 
@@ -176,11 +178,11 @@ pub type Bordered<const D: usize> = (Vec<SVector<f64, D>>, [f64; DIRECTIONS]);
 
 impl<const D: usize> Border<D> {
     /// For a state with its derivatives; none where all places are given.
-    pub fn new(sites: &[Site<D>], (at, points): (&Outcome<D>, &[Linearised<D>]), held: Held<'_>) -> Option<Self> {
+    pub fn new(sites: &Sites<D>, (at, points): (&Outcome<D>, &[Linearised<D>]), held: Held<'_>) -> Option<Self> {
         if held.is_empty() {
             return None;
         }
-        let modulus = modulus(sites);
+        let modulus = sites.modulus();
         let still = vec![SVector::zeros(); points.len()];
         let (mut columns, mut products) = ([const { Vec::new() }; DIRECTIONS], [const { Vec::new() }; DIRECTIONS]);
         let mut stiffness = Matrix3::identity();
@@ -190,10 +192,10 @@ impl<const D: usize> Border<D> {
             columns[direction] = sites.iter().zip(&at.over).map(column).collect();
             let moved: Vec<_> = columns[direction].iter().map(|a| a / modulus).collect();
             products[direction] = product(points, &still, &moved);
-            stiffness[(direction, direction)] = support.stiffness / (modulus * area(sites));
+            stiffness[(direction, direction)] = support.stiffness / (modulus * sites.area());
         }
         for (along, _) in held.directions().filter(|(direction, _)| *direction > 0) {
-            let steeper = at.steepening(sites, held, along) / (modulus * area(sites));
+            let steeper = at.steepening(sites, held, along) / (modulus * sites.area());
             for (direction, _) in held.directions().filter(|(direction, _)| *direction > 0) {
                 stiffness[(direction, along)] += steeper[direction - 1];
             }
@@ -205,7 +207,7 @@ impl<const D: usize> Border<D> {
     /// The product of the bordered system with (dt, kappa dz), of which `product` is J dt.
     pub fn product(
         &self,
-        sites: &[Site<D>],
+        sites: &Sites<D>,
         (dt, gone): (&[SVector<f64, D>], [f64; DIRECTIONS]),
         product: &mut [SVector<f64, D>],
     ) -> [f64; DIRECTIONS] {
@@ -220,7 +222,7 @@ impl<const D: usize> Border<D> {
     /// a force is to press on.
     pub fn solve(
         &self,
-        sites: &[Site<D>],
+        sites: &Sites<D>,
         (right, unbalance): (&[SVector<f64, D>], [f64; DIRECTIONS]),
         inverse: impl Fn(&[SVector<f64, D>]) -> Result<Vec<SVector<f64, D>>>,
     ) -> Result<Option<Bordered<D>>> {
@@ -251,11 +253,12 @@ impl<const D: usize> Border<D> {
     }
 
     /// l dt over the area.
-    fn row(&self, sites: &[Site<D>], direction: usize, dt: &[SVector<f64, D>]) -> f64 {
-        if !self.held[direction] || dt.is_empty() {
+    fn row(&self, sites: &Sites<D>, direction: usize, dt: &[SVector<f64, D>]) -> f64 {
+        if !self.held[direction] || sites.is_empty() {
             return 0.0;
         }
-        force_along(sites, dt, |i| self.columns[direction][i]) / area(sites)
+        let [force] = sites.team().sum([force_along(sites, dt, |i| self.columns[direction][i])]);
+        force / sites.area()
     }
 
     /// How far the indenter goes on.
@@ -270,31 +273,39 @@ pub fn shift<const D: usize>(ways: [f64; DIRECTIONS]) -> SVector<f64, D> {
 }
 
 /// How far the indenter has to come down, m, to press on the first point with about what carries a force; `motions` are relative
-/// to where it is.
-pub fn touch<const D: usize>(sites: &[Site<D>], motions: &[SVector<f64, D>], force: f64) -> f64 {
+/// to where it is. Collective.
+pub fn touch<const D: usize>(sites: &Sites<D>, motions: &[SVector<f64, D>], force: f64) -> f64 {
     let gap = |(site, motion): (&Site<D>, &SVector<f64, D>)| {
         (site.relative(motion).overlap, site.normal, 1.0 / (site.weight * site.moduli.normal))
     };
-    down_to(sites.iter().zip(motions).map(gap), force)
+    let first = nearest(sites.iter().zip(motions).map(gap));
+    let gap = sites.team().least(first.map_or(f64::INFINITY, |(gap, _)| gap));
+    let here = first.filter(|(here, _)| *here == gap).map_or(f64::INFINITY, |(gap, softness)| gap + force * softness);
+    let down = sites.team().least(here);
+    if down.is_finite() { down } else { 0.0 }
 }
 
 /// The same by the overlap, m, of each point, its normal and its softness, m per N/m.
 pub fn down_to<const D: usize>(points: impl Iterator<Item = (f64, SVector<f64, D>, f64)>, force: f64) -> f64 {
+    nearest(points).map_or(0.0, |(gap, softness)| gap + force * softness)
+}
+
+/// The gap, m, and the softness of the point that is touched first.
+fn nearest<const D: usize>(points: impl Iterator<Item = (f64, SVector<f64, D>, f64)>) -> Option<(f64, f64)> {
     let gap = |(overlap, normal, softness): (f64, SVector<f64, D>, f64)| (-overlap / normal.dot(&up()), softness);
-    let first = points.map(gap).min_by(|a, b| a.0.total_cmp(&b.0));
-    first.map_or(0.0, |(gap, softness)| gap + force * softness)
+    points.map(gap).min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// How the forces along the face change with the slopes of the profile as the indenter goes on in a direction, N/m per m, from a
-/// `shift`; of points over an `area` that press on it with so much vertically each, N/m.
+/// `shift`; of points of a size, m^(D - 1), that press on it with so much vertically each, N/m.
 pub fn steepening<const D: usize>(
     held: Held<'_>,
     (shift, direction): (&SVector<f64, D>, usize),
-    (pressing, area): (&[f64], f64),
+    (pressing, size): (&[f64], f64),
 ) -> Vector2<f64> {
     /// Over the distance of two points.
     const BESIDE: f64 = 1e-4;
-    let beside = BESIDE * (area / pressing.len().max(1) as f64).powf(1.0 / (D - 1) as f64);
+    let beside = BESIDE * size.powf(1.0 / (D - 1) as f64);
     let over = |sign: f64| held.over(&(shift + axis::<D>(direction) * (sign * beside)), pressing.len());
     let slopes = over(1.0).into_iter().zip(over(-1.0)).map(|(on, back)| (on.slope - back.slope) / (2.0 * beside));
     pressing.iter().zip(slopes).map(|(force, steeper)| steeper * *force).sum()

@@ -24,6 +24,7 @@ mod held;
 mod linear;
 mod pressed;
 mod search;
+mod sites;
 mod sweep;
 mod worn;
 
@@ -40,12 +41,11 @@ pub use continuation::start;
 pub use dense::Factor;
 pub use fold::jumped;
 pub use fourier::Fourier;
-pub use held::{
-    Border, Held, Over, against, axis, column, down_to, in_plane, modulus, places, shift, steepening, touch, up,
-};
+pub use held::{Border, Held, Over, against, axis, column, down_to, in_plane, places, shift, steepening, touch, up};
 pub use linear::{Linearised, product};
 pub use pressed::approach_under;
-pub use search::{Operator, Outcome, area, length, settle};
+pub use search::{Operator, Outcome, length, settle};
+pub use sites::Sites;
 
 /// A point of the contact during a step.
 #[derive(Debug, Clone, PartialEq)]

@@ -10,12 +10,12 @@ const MOST: usize = 200;
 /// The change of the approach in an iteration, over the approach, at which it is known well enough for a scale.
 const ENOUGH: f64 = 1e-3;
 
-/// The approach, m, under `force`, N/m or N, without friction, of an indenter that is placed at no approach over a face at rest.
+/// The approach, m, under `force`, N/m or N, without friction, of an indenter that is placed at no approach over a face at rest. Collective.
 ///
 /// Conjugate gradients for the pressures, kept at no tension and at the force (Polonsky and Keer, Wear 231 (1999) 206):
 /// gap = clearance + d(p) + p/alpha - D n_z.
 pub fn approach_under<const D: usize>(behind: &Behind<'_, D>, force: f64) -> Result<f64> {
-    let points = behind.interface.points().all();
+    let (points, team) = (behind.interface.points().all(), behind.interface.team());
     let upward: Vec<f64> = points.iter().map(|point| point.normal.dot(&up::<D>())).collect();
     let weight: Vec<f64> = points.iter().map(|point| point.weight).collect();
     let softness = behind.interface.penalty().map_or(0.0, |alpha| 1.0 / alpha);
@@ -30,12 +30,14 @@ pub fn approach_under<const D: usize>(behind: &Behind<'_, D>, force: f64) -> Res
     let levelled = |list: &mut [f64], p: &[f64]| {
         let touching = || (0..p.len()).filter(|&i| p[i] > 0.0);
         let sum = |value: &dyn Fn(usize) -> f64| touching().map(|i| weight[i] * value(i)).sum::<f64>();
-        let level = sum(&|i| list[i] * upward[i]) / sum(&|i| upward[i] * upward[i]);
+        let [above, over] = team.sum([sum(&|i| list[i] * upward[i]), sum(&|i| upward[i] * upward[i])]);
+        let level = above / over;
         list.iter_mut().zip(&upward).for_each(|(value, upward)| *value -= level * upward);
         level
     };
     let at_force = |p: &mut [f64]| {
         let carried: f64 = p.iter().zip(&weight).zip(&upward).map(|((p, w), upward)| p * w * upward).sum();
+        let [carried] = team.sum([carried]);
         p.iter_mut().for_each(|p| *p *= force / carried);
     };
     let mut p = vec![1.0; points.len()];
@@ -46,7 +48,8 @@ pub fn approach_under<const D: usize>(behind: &Behind<'_, D>, force: f64) -> Res
         let level = levelled(&mut gap, &p);
         let touches: Vec<bool> = p.iter().map(|p| *p > 0.0).collect();
         let dot = |a: &[f64], b: &[f64]| -> f64 {
-            (0..a.len()).filter(|&i| touches[i]).map(|i| weight[i] * a[i] * b[i]).sum()
+            let [sum] = team.sum([(0..a.len()).filter(|&i| touches[i]).map(|i| weight[i] * a[i] * b[i]).sum()]);
+            sum
         };
         let size = dot(&gap, &gap);
         let enough = (level - approach).abs() <= ENOUGH * level.abs();
@@ -62,12 +65,16 @@ pub fn approach_under<const D: usize>(behind: &Behind<'_, D>, force: f64) -> Res
         levelled(&mut answer, &p);
         let length = dot(&gap, &along) / dot(&answer, &along);
         before = size;
+        let mut anew = false;
         for (((p, along), gap), touches) in p.iter_mut().zip(&along).zip(&gap).zip(&touches) {
             if *touches {
                 *p = (*p - length * along).max(0.0);
             } else if *gap < 0.0 {
-                (*p, before) = (-length * gap, f64::INFINITY);
+                (*p, anew) = (-length * gap, true);
             }
+        }
+        if team.any(anew) {
+            before = f64::INFINITY;
         }
         at_force(&mut p);
     }

@@ -5,7 +5,7 @@ use nalgebra::{SVector, Vector2};
 use super::dense::{Factor, Influence};
 use super::held::{Border, Held, Over, against, steepening, up};
 use super::linear::Linearised;
-use super::{Answer, Laws, Site};
+use super::{Answer, Laws, Site, Sites};
 use crate::error::Result;
 use crate::loading::DIRECTIONS;
 
@@ -29,17 +29,51 @@ pub struct Outcome<const D: usize> {
     pub unbalance: [f64; DIRECTIONS],
     /// Of each point.
     pub answers: Vec<Answer<D>>,
+    /// Over all points.
+    sums: Sums,
     /// What round-off leaves of the equations of the indenter.
     noise: f64,
+}
+
+/// Over all points, of all ranks.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Sums {
+    /// The integrals of G^2, of t^2 and of the square of what round-off leaves of G.
+    excess: f64,
+    tractions: f64,
+    noise: f64,
+    /// How many are in contact.
+    active: f64,
+}
+
+impl Sums {
+    /// Over the points of this rank.
+    fn of<const D: usize>(sites: &[Site<D>], tractions: &[SVector<f64, D>], answers: &[Answer<D>]) -> Self {
+        let mut sums = Self::default();
+        for ((site, t), answer) in sites.iter().zip(tractions).zip(answers) {
+            sums.excess += site.weight * answer.excess.norm_squared();
+            sums.tractions += site.weight * t.norm_squared();
+            sums.noise += site.weight * answer.noise;
+            sums.active += f64::from(u8::from(answer.active));
+        }
+        sums
+    }
+
+    /// Over those of all, and the sums of the forces. Collective.
+    fn everywhere<const D: usize>(self, sites: &Sites<D>, [a, b, c]: [f64; DIRECTIONS]) -> (Self, [f64; DIRECTIONS]) {
+        let Self { excess, tractions, noise, active } = self;
+        let [excess, tractions, noise, active, a, b, c] = sites.team().sum([excess, tractions, noise, active, a, b, c]);
+        (Self { excess, tractions, noise, active }, [a, b, c])
+    }
 }
 
 /// What a Newton step takes off: dt, what that moves (C dt, with what the indenter goes back), and what that goes back, m.
 pub type Along<'a, const D: usize> = (&'a [SVector<f64, D>], &'a [SVector<f64, D>], SVector<f64, D>);
 
 impl<const D: usize> Outcome<D> {
-    /// Asks the laws; `motions` are those under the profile as it was placed.
+    /// Asks the laws; `motions` are those under the profile as it was placed. Collective.
     pub fn new(
-        sites: &[Site<D>],
+        sites: &Sites<D>,
         tractions: Vec<SVector<f64, D>>,
         (mut motions, shift): (Vec<SVector<f64, D>>, SVector<f64, D>),
         laws: Laws<'_>,
@@ -50,15 +84,16 @@ impl<const D: usize> Outcome<D> {
         {
             *motion -= site.normal * (site.normal.dot(&up()) * over.rise);
         }
-        let unbalance = laws.held.unbalance(sites, (&tractions, &over), &shift);
-        let unbalance = unbalance.map(|unbalance| unbalance / area(sites).sqrt());
-        let answers =
+        let answers: Vec<_> =
             sites.iter().zip(&tractions).zip(&motions).map(|((site, t), m)| site.answer(t, m, laws)).collect();
-        Self { tractions, motions, shift, over, unbalance, answers, noise: laws.held.noise(sites) }
+        let sums = Sums::of(sites, &tractions, &answers);
+        let (sums, met) = sums.everywhere(sites, laws.held.forces(sites, (&tractions, &over)));
+        let unbalance = laws.held.unbalance(met, &shift).map(|unbalance| unbalance / sites.area().sqrt());
+        Self { tractions, motions, shift, over, unbalance, answers, sums, noise: laws.held.noise(sites) }
     }
 
     /// The motions under the profile as it was placed.
-    fn under_placed(&self, sites: &[Site<D>]) -> Vec<SVector<f64, D>> {
+    fn under_placed(&self, sites: &Sites<D>) -> Vec<SVector<f64, D>> {
         let lowered = |((site, over), motion): ((&Site<D>, &Over), &SVector<f64, D>)| {
             motion + site.normal * (site.normal.dot(&up()) * over.rise)
         };
@@ -71,7 +106,7 @@ impl<const D: usize> Outcome<D> {
     }
 
     /// The same under other laws.
-    pub fn under(self, sites: &[Site<D>], laws: Laws<'_>) -> Self {
+    pub fn under(self, sites: &Sites<D>, laws: Laws<'_>) -> Self {
         let motions = self.under_placed(sites);
         Self::new(sites, self.tractions, (motions, self.shift), laws)
     }
@@ -79,7 +114,7 @@ impl<const D: usize> Outcome<D> {
     /// So much less of a step.
     pub fn taken(
         &self,
-        sites: &[Site<D>],
+        sites: &Sites<D>,
         (decrement, moved, gone): Along<'_, D>,
         (lambda, laws): (f64, Laws<'_>),
     ) -> Self {
@@ -90,13 +125,15 @@ impl<const D: usize> Outcome<D> {
         Self::new(sites, less(&self.tractions, decrement), motions, laws)
     }
 
-    /// How the forces along the face change with the slopes of the profile as the indenter goes on in a direction, N/m per m.
-    pub fn steepening(&self, sites: &[Site<D>], held: Held<'_>, direction: usize) -> Vector2<f64> {
+    /// How the forces along the face change with the slopes of the profile as the indenter goes on in a direction, N/m per m. Collective.
+    pub fn steepening(&self, sites: &Sites<D>, held: Held<'_>, direction: usize) -> Vector2<f64> {
         let pressing = |(site, traction): (&Site<D>, &SVector<f64, D>)| {
             -site.weight * site.normal.dot(traction) * site.normal.dot(&up())
         };
         let pressing: Vec<f64> = sites.iter().zip(&self.tractions).map(pressing).collect();
-        steepening(held, (&self.shift, direction), (&pressing, area(sites)))
+        let size = sites.area() / sites.everywhere().max(1.0);
+        let mine = steepening(held, (&self.shift, direction), (&pressing, size));
+        sites.team().sum([mine.x, mine.y]).into()
     }
 
     /// Of no points.
@@ -108,70 +145,63 @@ impl<const D: usize> Outcome<D> {
             over: Vec::new(),
             unbalance: [0.0; DIRECTIONS],
             answers: Vec::new(),
+            sums: Sums::default(),
             noise: 0.0,
         }
     }
 
     /// The norm of G over the face, Pa m^((D-1)/2).
-    pub fn norm(&self, sites: &[Site<D>]) -> f64 {
-        let squares = sites.iter().zip(&self.answers).map(|(site, answer)| site.weight * answer.excess.norm_squared());
+    pub fn norm(&self) -> f64 {
         let held: f64 = self.unbalance.iter().map(|unbalance| unbalance * unbalance).sum();
-        (squares.sum::<f64>() + held).sqrt()
+        (self.sums.excess + held).sqrt()
     }
 
     /// That of t.
-    pub fn size(&self, sites: &[Site<D>]) -> f64 {
-        let squares = sites.iter().zip(&self.tractions).map(|(site, t)| site.weight * t.norm_squared());
-        squares.sum::<f64>().sqrt()
+    pub fn size(&self) -> f64 {
+        self.sums.tractions.sqrt()
     }
 
     /// What round-off leaves of G, in the same norm.
-    pub fn noise(&self, sites: &[Site<D>]) -> f64 {
-        let squares = sites.iter().zip(&self.answers).map(|(site, answer)| site.weight * answer.noise);
-        4.0 * (squares.sum::<f64>() + self.noise * self.noise).sqrt()
+    pub fn noise(&self) -> f64 {
+        4.0 * (self.sums.noise + self.noise * self.noise).sqrt()
     }
 
     /// The derivatives at each point.
-    pub fn linearised(&self, sites: &[Site<D>]) -> Vec<Linearised<D>> {
+    pub fn linearised(&self, sites: &Sites<D>) -> Vec<Linearised<D>> {
         sites.iter().zip(&self.answers).map(|(site, answer)| Linearised::new(site, answer)).collect()
     }
 
     /// t* of each point, Pa.
-    pub fn met(&self, sites: &[Site<D>]) -> Vec<SVector<f64, D>> {
+    pub fn met(&self, sites: &Sites<D>) -> Vec<SVector<f64, D>> {
         sites.iter().zip(&self.answers).map(|(site, answer)| answer.met(site)).collect()
     }
 
     /// R of each direction over the area.
-    pub fn unbalanced(&self, sites: &[Site<D>]) -> [f64; DIRECTIONS] {
-        self.unbalance.map(|unbalance| unbalance / area(sites).sqrt())
+    pub fn unbalanced(&self, sites: &Sites<D>) -> [f64; DIRECTIONS] {
+        self.unbalance.map(|unbalance| unbalance / sites.area().sqrt())
     }
 
     /// How many points are in contact.
     pub fn in_contact(&self) -> usize {
-        self.answers.iter().filter(|answer| answer.active).count()
+        self.sums.active as usize
     }
-}
-
-/// Length, or area, of the face.
-pub fn area<const D: usize>(sites: &[Site<D>]) -> f64 {
-    sites.iter().map(|site| site.weight).sum()
 }
 
 /// The face at t - lambda dt with the longest lambda of 1, 1/2, ... that leaves less of G, or else that which leaves the least;
 /// and lambda. What a step moves is known, so that no length costs a product.
 pub fn length<const D: usize>(
-    sites: &[Site<D>],
+    sites: &Sites<D>,
     from: &Outcome<D>,
     along: Along<'_, D>,
     laws: Laws<'_>,
 ) -> (Outcome<D>, f64) {
-    let before = from.norm(sites);
+    let before = from.norm();
     let at = |lambda: f64| from.taken(sites, along, (lambda, laws));
     let mut best: Option<(Outcome<D>, f64, f64)> = None;
     let mut lambda = 1.0;
     for _ in 0..=MOST_HALVINGS {
         let outcome = at(lambda);
-        let norm = outcome.norm(sites);
+        let norm = outcome.norm();
         if norm <= (1.0 - SUFFICIENT * lambda) * before {
             return (outcome, lambda);
         }
@@ -189,14 +219,14 @@ pub type Operator<'a, const D: usize> =
 
 /// Newton's method from given tractions to where the laws hold to round-off, or as near as `most` iterations come.
 pub fn settle<const D: usize>(
-    sites: &[Site<D>],
+    sites: &Sites<D>,
     mut at: Outcome<D>,
     laws: Laws<'_>,
     (influence, moves): Operator<'_, D>,
     most: usize,
 ) -> Result<Outcome<D>> {
     for _ in 0..most {
-        if at.norm(sites) <= at.noise(sites) {
+        if at.norm() <= at.noise() {
             break;
         }
         let Ok(factor) = Factor::new(at.linearised(sites), influence) else { break };

@@ -8,11 +8,11 @@ use nalgebra::{SMatrix, SVector};
 
 use super::dense::Influence;
 use super::search::Outcome;
-use super::{Laws, Moduli, Site};
+use super::{Laws, Moduli, Site, Sites};
 
 /// Tractions after so many sweeps over all points, to and fro, under an indenter that stays.
 pub fn sweep<const D: usize>(
-    sites: &[Site<D>],
+    sites: &Sites<D>,
     mut at: Outcome<D>,
     laws: Laws<'_>,
     influence: &Influence<'_, D>,

@@ -1,11 +1,15 @@
 //! One outcome for all ranks of a communicator.
 
+mod team;
+
 use std::path::PathBuf;
 
 use mpi::collective::SystemOperation;
 use mpi::traits::{Communicator, CommunicatorCollectives, Root};
 
 use crate::error::{Error, Result};
+
+pub use team::{Team, Traffic, parted};
 
 /// Makes an error that any rank met the error of all ranks: that of the lowest rank that has one. Collective.
 pub fn agree<C: Communicator + CommunicatorCollectives, T>(comm: &C, mine: Result<T>) -> Result<T> {
