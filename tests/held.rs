@@ -139,7 +139,8 @@ fn both_strategies_hold_an_indenter_alike() {
         (SPACE, "", &softer, false),
     ];
     for (scene, loading, sets, ranks) in cases {
-        let scene = format!("{scene}{loading}");
+        // At no force every place that is out of touch is a solution.
+        let scene = format!("{scene}{loading}").replace("normal_force = 0.0", "normal_force = 0.02");
         let by = |strategy: &str, ranks: usize| {
             let run = Run::new(&scene).set(format!("solver.strategy={strategy}")).ranks(ranks);
             sets.iter().fold(run, |run, set| run.set(*set)).done()
