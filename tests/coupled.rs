@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Stdio;
 
 use common::msh::write_msh;
-use common::program::{Outcome, Run, assert_same, output_of, program, wait_for};
+use common::program::{Outcome, Run, assert_same, ends_with, output_of, program, wait_for};
 use common::solid::{Body, Surface};
 use mpjr::mesh::{Layer, Sides};
 
@@ -343,6 +343,20 @@ fn a_gmsh_mesh_is_the_layer_in_space() {
         let surfaces: [Surface<'_>; 2] = [("top", &|node| node[2] == 0.0), ("base", &|node| node[2] == -4e-3)];
         Body::layer([0.02, 0.008, 4e-3], [10, 4, 3]).write(&surfaces, file);
     });
+}
+
+/// A face that is too large for a dense compliance in each step is refused, by `check` and by `run`, with the remedy.
+#[test]
+fn a_large_face_is_refused() {
+    for command in ["check", "run"] {
+        let directory = tempfile::tempdir().unwrap();
+        let scene = directory.path().join("scene.toml");
+        std::fs::write(&scene, SCENE.replace("cells = [40, 8]", "cells = [2049, 2]")).unwrap();
+        let text = ends_with(program(1).arg(command).arg(&scene), 2);
+        let reason = "layer.cells: 2049 nodes of the face, and with heat.coupled = true, which inverts a dense matrix of the face in \
+                      each step, at most 2048 are solved for; take fewer cells along the face, or coupled = false";
+        assert!(text.contains(reason), "{text}");
+    }
 }
 
 /// The scene that `check` prints is the scene: it prints the same once more, of whatever temperature the arms were given at.

@@ -124,6 +124,29 @@ fn profiles_at_their_thresholds() {
     at_threshold(BLOCK, "warning: indenter: the profile's slope is 2.000 beside the contact", &slides, &[punch]);
 }
 
+/// The overlap of sqrt(2) 4.0 mm passes in 0.4 s at 1 cm/s: heat enters sqrt(D 0.4 s), beside cells of 0.38 mm. The pole of the law is at
+/// 241.4 K.
+#[test]
+fn heat_at_its_thresholds() {
+    let warm = |conductivity: f64, coupled: &[String]| {
+        let heat = format!("heat={{initial=293.0,base=293.0,coupled={}}}", !coupled.is_empty());
+        let own = [heat, format!("material.conductivity={conductivity}"), "material.heat_capacity=2e6".to_owned()];
+        let slides = [tanh(1e-6), then("velocity=0.01,distance=0.01,steps=100")];
+        [&own[..], &slides, coupled].concat()
+    };
+    let skin = "warning: layer.cells: cells at the face are 3.80e-4 m high";
+    at_threshold(BLOCK, skin, &warm(0.7, &[]), &warm(0.75, &[]));
+    let law = |initial: f64| {
+        let arms = ["material.arms=[{weight=0.3,time=1.0}]", "material.poisson_rule=\"constant_ratio\""];
+        let shift =
+            ["material.shift=\"wlf\"", "material.c1=17.44", "material.c2=51.6", "material.reference_temperature=293"];
+        let told = [format!("heat.initial={initial}"), format!("material.temperature={initial}")];
+        [strings(&arms), strings(&shift), told.to_vec()].concat()
+    };
+    let told = "warning: material.shift: the body reaches 291.3 K, 49.9 K above the pole of the WLF law";
+    at_threshold(BLOCK, told, &warm(1.0, &law(291.3)), &warm(1.0, &law(291.5)));
+}
+
 #[test]
 fn bodies_at_their_thresholds() {
     let ratio = |nu: f64| vec![format!("material.poisson_ratio={nu}")];

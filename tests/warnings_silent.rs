@@ -25,6 +25,8 @@ const TRAVEL: &str =
     r#"phase=[{name="press",duration=10.0,steps=20,approach=1e-3},{name="slide",velocity=0.02,distance=1.0,steps=60}]"#;
 const FAST: &str =
     r#"phase=[{name="press",duration=10.0,steps=20,approach=1e-3},{name="slide",velocity=1.0,distance=2.0,steps=200}]"#;
+const WARM: &str = "heat={initial=293.0,base=293.0,arms=true}";
+const CONDUCTS: &str = "material.conductivity=0.4";
 const LIGHT: &str = r#"phase=[{name="press",duration=10.0,steps=20,approach=1e-4}]"#;
 const FULL: &str = r#"phase=[{name="press",duration=10.0,steps=20,approach=5e-3}]"#;
 
@@ -113,6 +115,8 @@ const SOUND: &[(&str, &str, &[&str])] = &[
     ("in, held, out, in again", BLOCK, &[SLIP, CYCLE]),
     ("in, held, out, in again, with arms", BLOCK, &[CYCLE, ARMS, RATIO]),
     ("chosen steps", BLOCK, &[TANH, ADAPTIVE, ARMS, RATIO]),
+    ("warmed by friction", BLOCK, &[TANH, SLIDE, ARMS, RATIO, WARM, CONDUCTS, "material.heat_capacity=5e5"]),
+    ("warmed, coupled", BLOCK, &[TANH, SLIDE, ARMS, RATIO, WARM, CONDUCTS, "material.heat_capacity=5e5", "heat.coupled=true", "material.shift=\"wlf\"", "material.c1=5.94", "material.c2=151.6", "material.reference_temperature=293", "material.temperature=293"]),
     ("wave slides", WAVE, &[TRAVEL, TANH, TABLE_1, RATIO]),
     ("wave slides fast", WAVE, &[FAST, TANH, TABLE_1, RATIO]),
     ("wave slides, elastic slip", WAVE, &[TRAVEL, SLIP, TABLE_1, RATIO]),

@@ -284,7 +284,7 @@ fn coupled(scene: &Scene, heat: &Heat) -> Check {
             let (key, at) = (material_key(&scene.materials, index, "temperature"), shift.law().reference());
             return fail(
                 &key,
-                &format!("is {at} K; with heat.coupled = true it must be heat.initial, {} K", heat.initial),
+                format!("is {at} K; with heat.coupled = true it must be heat.initial, {} K", heat.initial),
             );
         }
     }
