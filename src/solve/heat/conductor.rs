@@ -16,6 +16,8 @@ pub trait Conductor {
     /// Takes the body to the end of the step that was prepared, under the power into each node of the face; gives what goes out
     /// through the base, with what of the source was put in there.
     fn commit(&mut self, power: &[f64]) -> Result<f64>;
+    /// Adds a theta everywhere, K; only where no base is held.
+    fn raise(&mut self, theta: f64) -> Result<()>;
     /// theta of each unknown of the mesh, K.
     fn field(&self) -> Result<Vec<f64>>;
     /// The sum of m theta over what is not held, J/m.

@@ -155,6 +155,12 @@ impl Conductor for LayeredConductor {
         Ok(self.past - self.drain * self.sum(self.rows - 1))
     }
 
+    fn raise(&mut self, theta: f64) -> Result<()> {
+        let uniform = theta * self.columns();
+        self.theta[..self.rows].iter_mut().for_each(|wave| wave[(0, 0)] += uniform);
+        Ok(())
+    }
+
     fn field(&self) -> Result<Vec<f64>> {
         let mut field = vec![0.0; self.all_rows * self.transform.nodes()];
         for row in 0..self.rows {

@@ -206,6 +206,11 @@ impl Conductor for SparseConductor {
         Ok(self.past + past - self.drain.iter().zip(theta.iter()).map(|(drain, theta)| drain * theta).sum::<f64>())
     }
 
+    fn raise(&mut self, theta: f64) -> Result<()> {
+        self.theta.view_mut()?.iter_mut().for_each(|place| *place += theta);
+        Ok(())
+    }
+
     fn field(&self) -> Result<Vec<f64>> {
         Ok(self.theta.view()?.to_vec())
     }

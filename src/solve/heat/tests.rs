@@ -159,6 +159,25 @@ fn heat_is_neither_lost_nor_made() {
     }
 }
 
+/// A body that no heat leaves keeps all of it, in steps of 1e12 times what a cell takes to even out.
+#[test]
+fn long_steps_keep_the_heat() {
+    let mut layer = conductor(&solid::<2>(&[(0.01, 8)], 2e-3, 6, 1.0), 1.0, false);
+    let heat =
+        Heat { media: vec![], initial: 293.0, base: None, convection: None, share: 1.0, arms: None, coupled: false };
+    let (dt, mut energy) = (1e12, HeatEnergy::default());
+    for step in 1..=10 {
+        conduct(&mut layer, &heat, (dt, &[0.0; 8]), (&[1e-9, 0.0, 0.0, 2e-9, 0.0, 0.0, 0.0, 0.0], None), &mut energy)
+            .unwrap();
+        assert!(
+            (layer.content() / energy.entered - 1.0).abs() < 1e-13,
+            "{step}: {} {}",
+            layer.content(),
+            energy.entered
+        );
+    }
+}
+
 /// Powers and materials in units 2^n times as large have the same digits.
 #[test]
 fn other_units_have_the_same_digits() {
