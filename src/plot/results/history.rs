@@ -62,9 +62,13 @@ pub(super) fn limits(run: &Run) -> Vec<Curve> {
 /// names them for all.
 pub(super) fn with_phases(run: &Run, mut figure: Figure, named: bool) -> Figure {
     let values = || figure.curves.iter().flat_map(|curve| &curve.points).map(|p| p.1).filter(|v| v.is_finite());
-    let (low, high) = values().fold((0.0f64, 0.0f64), |(low, high), v| (low.min(v), high.max(v)));
-    let air = 0.06 * (high - low);
-    figure.y = figure.y.over(low - air, high + air);
+    // An axis that has its ends keeps them.
+    let (low, high) = figure.y.range.unwrap_or_else(|| {
+        let (low, high) = values().fold((0.0f64, 0.0f64), |(low, high), v| (low.min(v), high.max(v)));
+        let air = 0.06 * (high - low);
+        (low - air, high + air)
+    });
+    figure.y = figure.y.over(low, high);
     let phases = &run.scene.phases;
     let last = run.scene.duration();
     let mut ends: Vec<(f64, String)> = Vec::new();
@@ -79,7 +83,7 @@ pub(super) fn with_phases(run: &Run, mut figure: Figure, named: bool) -> Figure 
     }
     for (i, (end, names)) in ends.into_iter().enumerate() {
         let label = if named { format!("end of {names}") } else { String::new() };
-        let line = Curve::line(label, vec![(end, low - air), (end, high + air)], PALETTE[3 + i % 3]);
+        let line = Curve::line(label, vec![(end, low), (end, high)], PALETTE[3 + i % 3]);
         figure.curves.push(line.stroked(Stroke::Dotted));
     }
     figure
