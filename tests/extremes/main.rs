@@ -73,7 +73,7 @@ fn random_monolithic_scenes(world: &SimpleCommunicator, _: &Path) {
 }
 
 /// The same without penetration and with Coulomb's law itself, and with a temperature of the body, whose arms follow it in a part of
-/// them: the balance of heat closes.
+/// them: the balance of heat closes; found: 99.8 % of 500 (not 305).
 fn random_heat_scenes(world: &SimpleCommunicator, _: &Path) {
     random(world, "exact,heat", 120);
 }
