@@ -1,6 +1,7 @@
 //! The composition root: the one place that matches on what a scene asks for and builds the parts for it.
 
 mod body;
+mod cohesive;
 mod estimate;
 mod inputs;
 mod map;
@@ -22,6 +23,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use nalgebra::Vector2;
 
+use crate::adhesion::{self, Bilinear, Dugdale, Exponential};
 use crate::bulk::Arms;
 use crate::element::mpjr::Quadrature;
 use crate::error::{Error, Result};
@@ -35,13 +37,14 @@ use crate::profile::{Extruded, Profile, Surface};
 use crate::scene::{self, Scene, Stepping, When};
 use crate::solve::{
     Body, Bordered, Compliance, Condensed, Convection, Coupled, Following, Freedom, Heat, Heated, Inside, Interior,
-    LARGE_FACE, LARGE_PERIODIC_FACE, Layered, MAX_NEWTON, Medium, Monolithic, PeriodicColumn, Relaxation, Remembering,
-    Response, Solid, Sparse, TransientProblem, Way,
+    LARGE_FACE, LARGE_PERIODIC_FACE, Layered, MAX_NEWTON, MAX_NEWTON_OF_JUMPS, Medium, Monolithic, PeriodicColumn,
+    Relaxation, Remembering, Response, Solid, Sparse, TransientProblem, Way,
 };
 use crate::wear::{self, Wear};
 
 use body::Materials;
 pub use body::Meshed;
+pub use cohesive::{cohesive, cohesive_zone};
 pub use estimate::{Estimate, affordable, countable};
 pub use inputs::inputs;
 pub use outline::{Outline, Stretch, outline};
@@ -111,11 +114,15 @@ pub fn prepare(comm: &SimpleCommunicator, scene: &Scene, file: &Path) -> Result<
     let elevations = share_numbers(comm, || elevations(scene, file))?;
     if scene.layer().is_some() {
         // A layer's outline is known before its mesh, which takes memory itself.
-        estimate::fits(comm, scene, file, &outline(scene, file)?)?;
+        let outline = outline(scene, file)?;
+        cohesive(scene, file, &outline)?;
+        estimate::fits(comm, scene, file, &outline)?;
     }
     let mesh = body::mesh(comm, scene, file)?;
     if scene.layer().is_none() {
-        estimate::fits(comm, scene, file, &Outline::of(scene, &mesh))?;
+        let outline = Outline::of(scene, &mesh);
+        cohesive(scene, file, &outline)?;
+        estimate::fits(comm, scene, file, &outline)?;
     }
     let shape = shape(scene, file, &elevations, &Outline::of(scene, &mesh))?;
     Ok(Parts { mesh, shape })
@@ -171,13 +178,18 @@ fn assembled<const D: usize>(
     compliances: &Compliances,
 ) -> Result<(Strategy, Vec<Phase>)> {
     let materials = Materials::new(scene);
-    let friction = scene.friction.as_ref().map(friction).transpose()?;
+    let bond = scene.adhesion.map(|adhesion| adhesion.friction);
+    let friction = scene.friction.as_ref().map(|law| friction(law, bond)).transpose()?;
     let (penalty, wear) = (body::penalty(scene, &source), scene.wear.map(wearing));
-    let laws = Laws { profile: Box::new(surface), penalty, friction, wear };
+    let adhesion = scene.adhesion.map(adhering);
+    let laws = Laws { profile: Box::new(surface), penalty, friction, wear, adhesion };
     let mut interface = Interface::new(source.face(), laws, quadrature(scene.contact.quadrature));
     let solid = Solid { source, dilatation: body::dilatation(scene), regions: materials.regions.clone() };
     interface = interface.among(&share::team(comm, scene));
     let clearance = clearance(scene, &mut interface)?;
+    if scene.adhesion.is_some() {
+        interface.measure_gaps()?;
+    }
     let heated = scene.heat.as_ref().map(|heat| (heat_of(scene, heat, &materials), solid.clone()));
     let mut problem = match form(scene) {
         Form::Monolithic => monolithic(comm, scene, (solid, materials), interface)?,
@@ -236,7 +248,7 @@ fn monolithic<const D: usize>(
     let parts = (interface, mounts::<D>(scene));
     let mut strategy = Monolithic::new(bulk, body, parts, &u, scene.solver.tolerance)?;
     let linear = if held { Linear::OwnPreconditioned } else { Linear::Preconditioned };
-    let settings = Settings { linear, max_newton: MAX_NEWTON, search: Search::Least };
+    let settings = Settings { linear, max_newton: MAX_NEWTON, max_unsolved: 1, search: Search::Least };
     if !held {
         let integrator = Integrator::new(comm, settings, &mut tangent)?;
         if integrator.asks_for_solves()? {
@@ -314,7 +326,8 @@ fn condensed<const D: usize, R: Response<D> + 'static>(
     let mounts = mounts::<D>(scene);
     let freedom = freedom::<D>(scene, height);
     let points = interface.points();
-    let alone = interface.is_normal_alone() && !points.share_nodes();
+    // Pressures alone do not pull.
+    let alone = interface.is_normal_alone() && !points.share_nodes() && interface.adhesion().is_none();
     let way = match alone && periodic && components > LARGE_FACE && freedom.unknowns() == 0 {
         true => Way::Pressures,
         false => Way::Newton,
@@ -334,7 +347,12 @@ fn condensed<const D: usize, R: Response<D> + 'static>(
     let last = if comm.rank() == 0 { freedom.unknowns() } else { 0 };
     let tractions = Vector::new(comm, D * points + last)?;
     let mut tangent = Matrix::shell(comm, tractions.local_len())?;
-    let settings = Settings { linear, max_newton: MAX_NEWTON, search: Search::Own };
+    // A contact that may jump has no system worth solving where it does.
+    let (max_newton, max_unsolved) = match interface.adhesion() {
+        Some(_) => (MAX_NEWTON_OF_JUMPS, MAX_NEWTON_OF_JUMPS),
+        None => (MAX_NEWTON, 1),
+    };
+    let settings = Settings { linear, max_newton, max_unsolved, search: Search::Own };
     let integrator = Integrator::new(comm, settings, &mut tangent)?;
     let told = (scene.solver.tolerance, freedom, way);
     let strategy = Box::new(Condensed::new(comm, (interface, mounts), response, &u, told)?);
@@ -391,7 +409,7 @@ fn heat_of(scene: &Scene, heat: &scene::Heat, materials: &Materials) -> Heat {
     }
 }
 
-fn friction(friction: &scene::Friction) -> Result<Box<dyn Law>> {
+fn friction(friction: &scene::Friction, bond: Option<scene::Bond>) -> Result<Box<dyn Law>> {
     let coefficient = match &friction.coefficient {
         scene::Coefficient::Number(number) => Coefficient::Constant(*number),
         scene::Coefficient::Formula(formula) => {
@@ -400,12 +418,25 @@ fn friction(friction: &scene::Friction) -> Result<Box<dyn Law>> {
             Coefficient::Formula(Arc::new(expression))
         }
     };
-    let strength = Strength::new(coefficient, friction.shear_limit);
+    let bond = match bond {
+        Some(scene::Bond::ShearStrength(strength)) => strength,
+        Some(scene::Bond::None) | None => 0.0,
+    };
+    let strength = Strength::new(coefficient, friction.shear_limit).bonded(bond);
     Ok(match friction.law {
         scene::Law::CoulombTanh { regularisation } => Box::new(CoulombTanh { strength, regularisation }),
         scene::Law::CoulombElasticSlip { elastic_slip } => Box::new(ElasticSlip { strength, elastic_slip }),
         scene::Law::Coulomb => Box::new(Coulomb { strength }),
     })
+}
+
+fn adhering(adhesion: scene::Adhesion) -> Box<dyn adhesion::Law> {
+    let scene::Adhesion { law, work, range, .. } = adhesion;
+    match law {
+        scene::AdhesionLaw::Exponential => Box::new(Exponential { work, range }),
+        scene::AdhesionLaw::Bilinear => Box::new(Bilinear { work, range }),
+        scene::AdhesionLaw::Dugdale => Box::new(Dugdale { work, range }),
+    }
 }
 
 fn wearing(wear: scene::Wear) -> Wear {

@@ -1,7 +1,8 @@
 //! The energy balance of a run.
 //!
 //! ```text
-//! work of what moves the indenter = stored + dissipated in the arms + dissipated by friction + worn off + penalty + mounts + imbalance
+//! work of what moves the indenter = stored + dissipated in the arms + dissipated by friction + worn off + penalty + adhesion
+//!                                   + dissipated in jumps + mounts + imbalance
 //! ```
 //!
 //! Each term is computed for itself, so that the imbalance says how well the steps resolve the history. The contact forces
@@ -26,6 +27,10 @@ pub struct Energy {
     pub penalty: f64,
     /// What the pressure did on what it wore off: integral of p dh_w.
     pub wear: f64,
+    /// Stored in the attraction since t = 0; what is in contact has given away its work of adhesion.
+    pub adhesion: f64,
+    /// What attraction did on the gaps beyond what it stored, at the mean traction of each step: what jumps dissipate.
+    pub jumps: f64,
     /// In the mounts.
     pub mounts: MountEnergy,
     /// What the others leave over of the work.
@@ -76,6 +81,10 @@ pub struct FaceEnergy {
     pub penalty: f64,
     /// What the pressure did on what it wore off since t = 0.
     pub wear: f64,
+    /// See [`Energy::adhesion`].
+    pub adhesion: f64,
+    /// See [`Energy::jumps`].
+    pub jumps: f64,
     /// In the mounts.
     pub mounts: MountEnergy,
 }
@@ -83,7 +92,7 @@ pub struct FaceEnergy {
 impl Energy {
     /// The balance of the two shares.
     pub fn new(face: FaceEnergy, body: BodyEnergy) -> Self {
-        let FaceEnergy { work, friction, penalty, wear, mounts } = face;
+        let FaceEnergy { work, friction, penalty, wear, adhesion, jumps, mounts } = face;
         let MountEnergy { spring, dashpot, kinetic } = mounts;
         let BodyEnergy { stored, dissipated } = body;
         Self {
@@ -93,8 +102,20 @@ impl Energy {
             friction_dissipation: friction,
             penalty,
             wear,
+            adhesion,
+            jumps,
             mounts,
-            imbalance: work - stored - dissipated - friction - penalty - wear - spring - dashpot - kinetic,
+            imbalance: work
+                - stored
+                - dissipated
+                - friction
+                - penalty
+                - wear
+                - adhesion
+                - jumps
+                - spring
+                - dashpot
+                - kinetic,
         }
     }
 }

@@ -18,6 +18,7 @@ use std::rc::Rc;
 
 use nalgebra::{SVector, Vector2};
 
+use crate::adhesion;
 use crate::element::mpjr::Quadrature;
 use crate::error::{Error, Result};
 use crate::friction::{Circumstances, Lasting, Law};
@@ -47,6 +48,8 @@ pub struct Laws {
     pub friction: Option<Box<dyn Law>>,
     /// None = nothing wears.
     pub wear: Option<Wear>,
+    /// None = nothing pulls.
+    pub adhesion: Option<Box<dyn adhesion::Law>>,
 }
 
 /// The MPJR interface elements of a contact face.
@@ -79,7 +82,7 @@ pub struct Totals {
     pub tangential_force: Vector2<f64>,
     /// integral of p dh/dx and p dh/dy, N/m or N.
     pub hysteretic_force: Vector2<f64>,
-    /// Share of the face with p > 0.
+    /// Share of the face whose gap is closed.
     pub contact_fraction: f64,
     /// Share of the contact that sticks; 0 without contact or friction.
     pub stick_fraction: f64,
@@ -155,7 +158,7 @@ impl<const D: usize> Face for Interface<D> {
 
     fn areas(&self) -> [Vec<f64>; 2] {
         let weights = || self.points.all().iter().map(|point| point.weight);
-        let open = weights().zip(&self.accepted).map(|(weight, state)| if state.pressure > 0.0 { 0.0 } else { weight });
+        let open = weights().zip(&self.accepted).map(|(weight, state)| if state.touches() { 0.0 } else { weight });
         [weights().collect::<Vec<_>>(), open.collect()].map(|areas| self.at_nodes(&areas))
     }
 }
@@ -236,6 +239,23 @@ impl<const D: usize> Interface<D> {
     /// alpha, Pa/m; none = no penetration.
     pub fn penalty(&self) -> Option<f64> {
         self.laws.penalty
+    }
+
+    /// The law of adhesion.
+    pub fn adhesion(&self) -> Option<&dyn adhesion::Law> {
+        self.laws.adhesion.as_deref()
+    }
+
+    /// Tells each point of a face at rest its gap under an indenter at no approach, m, which adhesion has to know.
+    ///
+    /// # Errors
+    /// As for [`Self::place`].
+    pub fn measure_gaps(&mut self) -> Result<()> {
+        self.place(Placement::default())?;
+        for i in 0..self.points.count() {
+            self.accepted[i].overlap = (-self.clearance(i, 0.0) * self.points.all()[i].normal[D - 1]).min(0.0);
+        }
+        Ok(())
     }
 
     /// Whether the laws ask for no motion along the face: without friction and wear on a flat one.
@@ -329,15 +349,15 @@ impl<const D: usize> Interface<D> {
         for (i, (point, state)) in self.points.all().iter().zip(&self.accepted).enumerate() {
             length += point.weight;
             totals.max_penetration = totals.max_penetration.max(state.overlap);
-            if state.pressure <= 0.0 {
+            if state.pressure == 0.0 {
                 continue;
             }
-            contact += point.weight;
+            contact += if state.touches() { point.weight } else { 0.0 };
             totals.normal_force -= point.weight * state.on_layer(&point.normal)[D - 1];
             totals.tangential_force += along_the_plane(&state.shear) * point.weight;
             totals.hysteretic_force +=
                 self.gradient(i, &beside) * (point.weight * point.normal[D - 1] * state.pressure);
-            if state.sticks {
+            if state.sticks && state.touches() {
                 stick += point.weight;
                 totals.stuck_slip = totals.stuck_slip.max(state.stuck.norm());
             }

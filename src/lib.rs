@@ -14,7 +14,7 @@
 //! | [`output`] | history, fields, XDMF, checkpoints |
 //! | [`interface`], [`bulk`] | points of the contact with their laws and states; forces of a body with memory |
 //! | [`energy`], [`snapshot`], [`loading`] | the balance; the state as lists; where the indenter is |
-//! | [`friction`], [`wear`], [`profile`], [`rheology`], [`element`], [`mesh`] | pure laws, numbers in and numbers out; cells |
+//! | [`friction`], [`adhesion`], [`wear`], [`profile`], [`rheology`], [`element`], [`mesh`] | pure laws, numbers in and numbers out; cells |
 //! | [`expression`], [`table`], [`heightmap`], [`input`], [`checksum`] | formulas and files of numbers |
 //! | [`oracle`] | closed forms and Fourier solutions that results are compared with |
 //! | [`petsc`], [`parallel`], [`memory`], [`error`] | thin safe wrappers, the only `unsafe` code; one outcome for all ranks |
@@ -22,6 +22,7 @@
 // All that is printed goes through cli::terminal, which survives a reader that goes away.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
+pub mod adhesion;
 pub mod bulk;
 pub mod checksum;
 pub mod cli;

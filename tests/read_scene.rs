@@ -331,6 +331,7 @@ impl Random {
             heat,
             mount: None,
             wear: None,
+            adhesion: None,
             output: Output {
                 interface_every: self.below(3) as usize,
                 bulk_at: if self.below(2) == 0 { vec![] } else { ends.chain(times).collect() },

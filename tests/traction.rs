@@ -10,19 +10,21 @@ use std::sync::Arc;
 
 use mpi::topology::SimpleCommunicator;
 use mpi_cases::Case;
+use mpjr::adhesion;
 use mpjr::expression::Expression;
 use mpjr::friction::{Coefficient, Coulomb, CoulombTanh, ElasticSlip, Law, Strength, VARIABLES};
 use mpjr::interface::State;
 use mpjr::loading::Support;
 use mpjr::profile::Height;
 use mpjr::solve::traction::{
-    Border, Factor, Held, Laws, Moduli, Operator, Outcome, Site, Sites, against, product, settle, shift,
+    Border, Damping, Factor, Held, Laws, Moduli, Operator, Outcome, Site, Sites, against, product, settle, shift,
 };
 use mpjr::wear::{Part, Wear};
 use nalgebra::{DMatrix, SMatrix, SVector, Vector2};
 
 const CASES: &[Case] = &[
     Case::new("the_linear_system_is_the_derivative", &[1], the_linear_system_is_the_derivative),
+    Case::new("the_linear_system_of_adhesion_is_the_derivative", &[1], the_linear_system_of_adhesion_is_the_derivative),
     Case::new("the_borders_are_derivatives", &[1], the_borders_are_derivatives),
     Case::new("the_solution_does_not_depend_on_rho", &[1], the_solution_does_not_depend_on_rho),
     Case::new("a_held_point_has_the_shear_of_its_slip", &[1], a_held_point_has_the_shear_of_its_slip),
@@ -68,6 +70,7 @@ impl<const D: usize> Face<D> {
             slid: 0.3,
             temperature: 0.0,
             moduli: Moduli { normal: 0.3, tangential: Some(0.4) },
+            damping: None,
             lengths: [1.0; 2],
         };
         let sites = (0..count).map(site).collect::<Vec<_>>().into();
@@ -91,6 +94,16 @@ impl<const D: usize> Face<D> {
     fn outcome(&self, tractions: Vec<SVector<f64, D>>, laws: Laws<'_>) -> Outcome<D> {
         let motions = self.moves(&tractions).iter().zip(&self.free).map(|(moved, free)| moved + free).collect();
         Outcome::new(&self.sites, tractions, (motions, SVector::zeros()), laws)
+    }
+
+    /// Central differences of G along dt.
+    fn differences(&self, dt: &[SVector<f64, D>], laws: Laws<'_>) -> Vec<SVector<f64, D>> {
+        let step = 1e-7;
+        let shifted = |h: f64| {
+            let t = self.tractions.iter().zip(dt).map(|(t, dt)| t + dt * h).collect();
+            excesses(&self.outcome(t, laws))
+        };
+        shifted(step).iter().zip(shifted(-step)).map(|(plus, minus)| (plus - minus) / (2.0 * step)).collect()
     }
 }
 
@@ -118,9 +131,60 @@ fn all_laws(check: impl Fn(Laws<'_>)) {
     let friction = std::iter::once(None).chain(laws.as_flattened().iter().map(|law| Some(&**law)));
     for friction in friction {
         for (penalty, wear) in [None, Some(2.0)].into_iter().flat_map(|penalty| worn().map(|wear| (penalty, wear))) {
-            check(Laws { penalty, friction, wear, dt: 0.5, resolution: 0.0, held: Held::default() });
+            check(Laws { penalty, friction, wear, adhesion: None, dt: 0.5, resolution: 0.0, held: Held::default() });
         }
     }
+}
+
+/// The same with attraction across gaps, whose steepest fall is less than rho_n, also where it is held back on the way of a jump, and with
+/// what a bond bears.
+fn the_linear_system_of_adhesion_is_the_derivative(_: &SimpleCommunicator, _: &Path) {
+    let (work, range) = (0.1, 1.0);
+    let laws: [Box<dyn adhesion::Law>; 3] = [
+        Box::new(adhesion::Exponential { work, range }),
+        Box::new(adhesion::Bilinear { work, range }),
+        Box::new(adhesion::Dugdale { work, range }),
+    ];
+    let bonded = |bond| -> [Box<dyn Law>; 3] {
+        let strength = Strength::constant(0.4).bonded(bond);
+        [
+            Box::new(CoulombTanh { strength: strength.clone(), regularisation: 0.9 }),
+            Box::new(ElasticSlip { strength: strength.clone(), elastic_slip: 0.7 }),
+            Box::new(Coulomb { strength }),
+        ]
+    };
+    let frictions = [bonded(0.0), bonded(0.3)];
+    let mut open = 0;
+    for (adhesion, damping) in laws.iter().flat_map(|law| [None, Some(0.5)].map(|kappa| (law, kappa))) {
+        for friction in std::iter::once(None).chain(frictions.as_flattened().iter().map(|law| Some(&**law))) {
+            for penalty in [None, Some(2.0)] {
+                let (adhesion, held) = (Some(&**adhesion), Held::default());
+                let laws = Laws { penalty, friction, wear: None, adhesion, dt: 0.5, resolution: 0.0, held };
+                for seed in 1..6 {
+                    let mut draw = Draw(seed);
+                    let mut face = Face::<3>::new(7, &mut draw);
+                    let stiffness = damping.unwrap_or_default();
+                    for site in face.sites.each() {
+                        site.damping = damping.map(|_| Damping { stiffness, overlap: draw.unit() });
+                    }
+                    open += pulled(&face, laws, &mut draw);
+                }
+            }
+        }
+    }
+    assert!(open > 100, "{open}");
+}
+
+/// How many points are pulled across a gap, where the tangent is the derivative.
+fn pulled<const D: usize>(face: &Face<D>, laws: Laws<'_>, draw: &mut Draw) -> usize {
+    let at = face.outcome(face.tractions.clone(), laws);
+    let points = at.linearised(&face.sites);
+    let dt: Vec<SVector<f64, D>> = (0..7).map(|_| draw.vector()).collect();
+    let exact = product(&points, &dt, &face.moves(&dt));
+    for (difference, exact) in face.differences(&dt, laws).iter().zip(&exact) {
+        assert!((difference - exact).norm() < 2e-6 * exact.norm().max(1.0), "{laws:?}");
+    }
+    at.answers.iter().filter(|answer| answer.active && answer.gap > 0.0).count()
 }
 
 /// J dt against central differences of G, and J (J^-1 b) = b, for every law and with no penetration.
@@ -138,13 +202,8 @@ fn derivative<const D: usize>() {
         let points = at.linearised(&face.sites);
         let dt: Vec<SVector<f64, D>> = (0..7).map(|_| draw.vector()).collect();
         let exact = product(&points, &dt, &face.moves(&dt));
-        let step = 1e-7;
-        let shifted = |h: f64| {
-            let t = face.tractions.iter().zip(&dt).map(|(t, dt)| t + dt * h).collect();
-            excesses(&face.outcome(t, laws))
-        };
-        for ((plus, minus), exact) in shifted(step).iter().zip(shifted(-step)).zip(&exact) {
-            assert!(((plus - minus) / (2.0 * step) - exact).norm() < 2e-7, "{laws:?}");
+        for (difference, exact) in face.differences(&dt, laws).iter().zip(&exact) {
+            assert!((difference - exact).norm() < 2e-7, "{laws:?}");
         }
         let factor = Factor::new(points.clone(), &|j, rows| face.column(j, rows)).unwrap();
         let solved = factor.solve(&dt, |t| Ok(face.moves(t))).unwrap();
@@ -249,8 +308,8 @@ fn solution<const D: usize>() {
 /// A point that is held along the face answers with what its law says of the slip, or takes any shear that Coulomb allows.
 fn a_held_point_has_the_shear_of_its_slip(_: &SimpleCommunicator, _: &Path) {
     let law = Coulomb { strength: Strength::constant(0.5) };
-    let laws =
-        Laws { penalty: Some(4.0), friction: Some(&law), wear: None, dt: 1.0, resolution: 0.0, held: Held::default() };
+    let (penalty, friction, held) = (Some(4.0), Some(&law as &dyn Law), Held::default());
+    let laws = Laws { penalty, friction, wear: None, adhesion: None, dt: 1.0, resolution: 0.0, held };
     let site = |slip: f64| Site {
         normal: SVector::from([0.0, 1.0]),
         weight: 1.0,
@@ -260,6 +319,7 @@ fn a_held_point_has_the_shear_of_its_slip(_: &SimpleCommunicator, _: &Path) {
         slid: 0.0,
         temperature: 0.0,
         moduli: Moduli { normal: 4.0, tangential: None },
+        damping: None,
         lengths: [1.0; 2],
     };
     let met = |slip: f64, shear: f64| {

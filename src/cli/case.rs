@@ -182,6 +182,7 @@ pub fn extra(scene: &Scene) -> Extra {
         heat: scene.heat.is_some(),
         wear: scene.wear.is_some(),
         worn_profile: scene.wear.is_some_and(wears),
+        adhesion: scene.adhesion.is_some(),
     }
 }
 

@@ -36,6 +36,7 @@ pub fn run(arguments: &CheckArguments) -> Result<()> {
     composition::countable(&scene, file)?;
     let measured = composition::measured(&scene, file)?;
     let outline = composition::outline(&scene, file)?;
+    composition::cohesive(&scene, file, &outline)?;
     // All unknowns are shared by as many ranks as a run may have.
     if scene.solver.strategy != Strategy::Monolithic {
         composition::affordable(&scene, file, &outline, 1)?;

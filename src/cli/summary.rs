@@ -10,8 +10,8 @@ use crate::energy::{Energy, MountEnergy};
 use crate::output::Status;
 use crate::petsc;
 use crate::scene::{
-    Coefficient, Friction, Heat, Law, Penalty, PoissonRule, Quadrature, Scene, Sides, Span, Strategy, Wear, WearLaw,
-    Wearing, added_compliance, shortest_step,
+    Adhesion, AdhesionLaw, Bond, Coefficient, Friction, Heat, Law, Penalty, PoissonRule, Quadrature, Scene, Sides,
+    Span, Strategy, Wear, WearLaw, Wearing, added_compliance, shortest_step,
 };
 use crate::solve::{Counts, Work};
 
@@ -50,6 +50,10 @@ pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
     match &scene.wear {
         Some(wear) => yes.push(wear_law(wear)),
         None => no.push("wear".to_owned()),
+    }
+    match &scene.adhesion {
+        Some(adhesion) => yes.push(adhesion_law(adhesion)),
+        None => no.push("adhesion".to_owned()),
     }
     yes.push(format!(
         "contact: {}, {} quadrature",
@@ -110,6 +114,20 @@ fn wear_law(&Wear { of, law, coefficient }: &Wear) -> String {
         WearLaw::Energy => "q.w (energy)",
     };
     format!("wear of the {of}: rate = {coefficient:e} 1/Pa {law}, implicit")
+}
+
+/// How the surfaces pull, and what a closed gap bears.
+fn adhesion_law(&Adhesion { law, work, range, friction }: &Adhesion) -> String {
+    let law = match law {
+        AdhesionLaw::Exponential => "exponential",
+        AdhesionLaw::Bilinear => "bilinear",
+        AdhesionLaw::Dugdale => "Dugdale",
+    };
+    let bond = match friction {
+        Bond::None => "no friction in tension".to_owned(),
+        Bond::ShearStrength(strength) => format!("a closed gap bears a shear of {strength:e} Pa besides"),
+    };
+    format!("adhesion: {law}, {work:e} J/m^2 over a range of {range:e} m; contact by gap; {bond}")
 }
 
 /// The penalty, and how much it softens a layer.
@@ -313,10 +331,16 @@ fn balance(energy: &Energy, unit: &str) -> String {
         friction_dissipation,
         penalty,
         wear,
+        adhesion,
+        jumps,
         mounts,
         imbalance,
     } = energy;
     let worn = if *wear == 0.0 { String::new() } else { format!(" + wear {wear:.3e}") };
+    let pulled = match (*adhesion, *jumps) {
+        (0.0, 0.0) => String::new(),
+        _ => format!(" + adhesion {adhesion:.3e} + jumps {jumps:.3e}"),
+    };
     let MountEnergy { spring, dashpot, kinetic } = mounts;
     let held = match *mounts == MountEnergy::default() {
         true => String::new(),
@@ -324,7 +348,7 @@ fn balance(energy: &Energy, unit: &str) -> String {
     };
     format!(
         "work {external_work:.3e} = stored {stored:.3e} + arms {viscoelastic_dissipation:.3e} + friction \
-         {friction_dissipation:.3e}\n{:15}+ penalty {penalty:.3e}{worn}{held} + imbalance {imbalance:.3e} {unit}",
+         {friction_dissipation:.3e}\n{:15}+ penalty {penalty:.3e}{worn}{pulled}{held} + imbalance {imbalance:.3e} {unit}",
         ""
     )
 }

@@ -15,12 +15,13 @@ const LEAST_LINES: usize = 2;
 
 /// Lines and columns of nodes of a face that so many ranks share: of a large periodic one in space, which is solved by transforms alone.
 ///
-/// Heat is conducted by one rank, which has to have the whole face.
+/// Heat is conducted by one rank, which has to have the whole face, and the jumps of an adhesive one are followed by one.
 fn lines(scene: &Scene, ranks: usize) -> Option<[usize; 2]> {
     let layer = scene.layer().filter(|layer| layer.is_periodic())?;
     let [lines, columns] = layer.spans.iter().map(|span| span.cells).collect::<Vec<_>>().try_into().ok()?;
     let suits = form(scene) != Form::Monolithic
         && scene.heat.is_none()
+        && scene.adhesion.is_none()
         && scene.contact.quadrature == Quadrature::Nodal
         && 3 * lines * columns > LARGE_FACE;
     (ranks > 1 && suits && lines >= LEAST_LINES * ranks).then_some([lines, columns])

@@ -96,6 +96,9 @@ pub fn steady(comm: &SimpleCommunicator, scene: &Scene, file: &Path, heading: Ve
     if scene.mount.is_some() {
         return Err(refused("mount", "holds an approach or a force, and nothing between: take the table out"));
     }
+    if scene.adhesion.is_some() {
+        return Err(refused("adhesion", "is not solved for steady sliding; run its transient, or take the table out"));
+    }
     if scene.wear.is_some() {
         return Err(refused("wear", "has no steady state: what wears goes on changing; take the table out"));
     }
@@ -104,7 +107,7 @@ pub fn steady(comm: &SimpleCommunicator, scene: &Scene, file: &Path, heading: Ve
     }
     let held = held(scene, file)?;
     let Parts { mesh, shape } = prepare(comm, scene, file)?;
-    let friction = scene.friction.as_ref().map(friction).transpose()?;
+    let friction = scene.friction.as_ref().map(|law| friction(law, None)).transpose()?;
     if friction.as_ref().is_some_and(|law| law.strength().remembers()) {
         return Err(refused(
             "friction.coefficient",
@@ -134,7 +137,8 @@ fn sliding<const D: usize>(
     friction: Option<Box<dyn Law>>,
     (held, face): ((Held, Vector2<f64>), FacePlan),
 ) -> Result<Sliding> {
-    let laws = Laws { profile: Box::new(surface), penalty: body::penalty(scene, &source), friction, wear: None };
+    let (penalty, profile) = (body::penalty(scene, &source), Box::new(surface));
+    let laws = Laws { profile, penalty, friction, wear: None, adhesion: None };
     let interface = Interface::new(source.face(), laws, quadrature(scene.contact.quadrature));
     let mut spacing = [1.0; 2];
     let spans = scene.layer().map_or(&[][..], |layer| &layer.spans);

@@ -5,12 +5,14 @@ use std::sync::Arc;
 use super::Circumstances;
 use crate::expression::{Dual, Expression};
 
-/// |q| <= B = min(f p, limit), with the coefficient that belongs to the end of the step.
+/// |q| <= B = min(f p + bond, limit), with the coefficient that belongs to the end of the step.
 #[derive(Debug, Clone)]
 pub struct Strength {
     coefficient: Coefficient,
     /// Pa; infinite = none.
     limit: f64,
+    /// What a closed gap bears without pressure, Pa.
+    bond: f64,
 }
 
 /// The coefficient of friction f, -.
@@ -51,12 +53,22 @@ pub struct Lasting {
 impl Strength {
     /// Coulomb's.
     pub fn constant(coefficient: f64) -> Self {
-        Self { coefficient: Coefficient::Constant(coefficient), limit: f64::INFINITY }
+        Self { coefficient: Coefficient::Constant(coefficient), limit: f64::INFINITY, bond: 0.0 }
     }
 
     /// With a limit, Pa, if there is one.
     pub fn new(coefficient: Coefficient, limit: Option<f64>) -> Self {
-        Self { coefficient, limit: limit.unwrap_or(f64::INFINITY) }
+        Self { coefficient, limit: limit.unwrap_or(f64::INFINITY), bond: 0.0 }
+    }
+
+    /// That bears `bond`, Pa, besides, where the gap is closed, whatever the pressure.
+    pub fn bonded(self, bond: f64) -> Self {
+        Self { bond, ..self }
+    }
+
+    /// What a closed gap bears without pressure, Pa.
+    pub fn bond(&self) -> f64 {
+        self.bond
     }
 
     /// Whether B changes with what a point has slid.
@@ -92,11 +104,10 @@ impl Strength {
             }
         };
         let pressure = at.pressure;
-        match f * pressure > self.limit {
+        let value = f * pressure + self.bond;
+        match value > self.limit {
             true => Bound { value: self.limit, by_slip: 0.0, by_pressure: 0.0 },
-            false => {
-                Bound { value: f * pressure, by_slip: by_slip * pressure, by_pressure: f + by_pressure * pressure }
-            }
+            false => Bound { value, by_slip: by_slip * pressure, by_pressure: f + by_pressure * pressure },
         }
     }
 

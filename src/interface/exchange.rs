@@ -8,6 +8,8 @@
 //! friction:              integral of q.d, d the slip that dissipates; at least 0
 //! penalty:               integral of 1/2 p o, and what elastic slip has stored
 //! wear:                  integral of p dh_w
+//! adhesion:              integral of its potential; the work of the indenter is then without dg
+//! jumps:                 integral of p do less what that adds to the potential and the penalty: 0 along the law, for short steps
 //! ```
 //!
 //! What an indenter wears at the points of the face is put down at nodes of its own, so that the profile over a point is then another by
@@ -20,6 +22,7 @@
 use nalgebra::SVector;
 
 use super::{Interface, State};
+use crate::adhesion;
 use crate::energy::{FaceEnergy, MountEnergy};
 use crate::error::Result;
 use crate::friction::Law;
@@ -91,8 +94,17 @@ impl Exchange {
         for (i, (before, after)) in interface.states().iter().zip(states).enumerate() {
             let point = &interface.points().all()[i];
             let opened = before.overlap.min(0.0) - after.overlap.min(0.0);
-            let closed = point.normal[D - 1] * (place.approach_rate * dt - (heights[i] - self.heights[i])) + opened;
+            let approached = point.normal[D - 1] * (place.approach_rate * dt - (heights[i] - self.heights[i]));
             let pressure = 0.5 * (before.pressure + after.pressure);
+            let closed = match interface.adhesion() {
+                None => approached + opened,
+                Some(law) => {
+                    let [stored, jumped] = attracted(law, before, after);
+                    self.energy.adhesion += point.weight * stored;
+                    self.energy.jumps += point.weight * jumped;
+                    approached
+                }
+            };
             // What friction is not let give back, the indenter is not let take.
             let Rub { shear, stored, lost, taken } = Rub::new(interface.friction(), before, after);
             elastic += point.weight * shear.dot(&stored);
@@ -100,7 +112,7 @@ impl Exchange {
             work += point.weight * (pressure * closed + shear.dot(&(way - lost)) + taken);
             pressing += point.weight * (pressure * point.normal[D - 1] - shear[D - 1]);
             shears += shear * point.weight;
-            penalty += 0.5 * point.weight * after.pressure * after.overlap;
+            penalty += point.weight * pressed(interface.adhesion(), after);
             let worn = after.worn - before.worn;
             wear += point.weight * pressure * worn;
             if let Some(settled) = &settled {
@@ -152,20 +164,39 @@ impl Exchange {
 
     /// Adds the account to a snapshot.
     pub fn save(&self, team: &Team, snapshot: &mut Snapshot) {
-        let Self { energy: FaceEnergy { work, friction, penalty, wear, mounts }, elastic, .. } = self;
+        let Self { energy, elastic, .. } = self;
+        let FaceEnergy { work, friction, penalty, wear, adhesion, jumps, mounts } = energy;
         let MountEnergy { spring, dashpot, kinetic } = mounts;
-        let energies = [work, friction, penalty, elastic, spring, dashpot, kinetic, wear];
+        let energies = [work, friction, penalty, elastic, spring, dashpot, kinetic, wear, adhesion, jumps];
         snapshot.put("face-energy", energies.map(|energy| *energy).to_vec());
         snapshot.put("face-heights", team.collected(self.heights.clone()));
     }
 
     /// Takes the account from a snapshot.
     pub fn restore(&mut self, team: &Team, snapshot: &Snapshot) -> Result<()> {
-        let [work, friction, penalty, elastic, spring, dashpot, kinetic, wear] = snapshot.numbers("face-energy")?;
-        self.energy = FaceEnergy { work, friction, penalty, wear, mounts: MountEnergy { spring, dashpot, kinetic } };
+        let [work, friction, penalty, elastic, spring, dashpot, kinetic, wear, adhesion, jumps] =
+            snapshot.numbers("face-energy")?;
+        let mounts = MountEnergy { spring, dashpot, kinetic };
+        self.energy = FaceEnergy { work, friction, penalty, wear, adhesion, jumps, mounts };
         self.elastic = elastic;
         snapshot.fill_own("face-heights", team, &mut self.heights)
     }
+}
+
+/// What the penalty stores at a point, J/m^2.
+fn pressed<const D: usize>(law: Option<&dyn adhesion::Law>, state: &State<D>) -> f64 {
+    match law {
+        None => 0.5 * state.pressure * state.overlap,
+        Some(law) => 0.5 * (state.pressure + law.strength()) * state.overlap.max(0.0),
+    }
+}
+
+/// What the attraction at a point stores in a step, and what it does beyond that and the penalty, J/m^2.
+fn attracted<const D: usize>(law: &dyn adhesion::Law, before: &State<D>, after: &State<D>) -> [f64; 2] {
+    let stored = law.potential(after.overlap) - law.potential(before.overlap);
+    let pressure = 0.5 * (before.pressure + after.pressure);
+    let penalty = pressed(Some(law), after) - pressed(Some(law), before);
+    [stored, pressure * (after.overlap - before.overlap) - stored - penalty]
 }
 
 /// h over each point where the indenter was placed last, m.

@@ -61,6 +61,11 @@ impl<const D: usize> State<D> {
         Self { slip: SVector::zeros(), ..*self }
     }
 
+    /// Whether its gap is closed: where nothing pulls, whether p > 0.
+    pub fn touches(&self) -> bool {
+        self.overlap >= 0.0 && self.pressure != 0.0
+    }
+
     /// q - p n, Pa.
     pub fn on_layer(&self, normal: &SVector<f64, D>) -> SVector<f64, D> {
         self.shear - normal * self.pressure

@@ -15,7 +15,7 @@ fn with_law<const D: usize>(quadrature: Quadrature, sides: Sides, friction: Box<
     let span = Span { width: 1.0, cells: if D == 2 { 8 } else { 4 }, sides };
     let layer = Layer { spans: vec![span; D - 1], depth: 1.0, rows: 1, grading: 1.0, strata: vec![] };
     let profile = Box::new(Extruded(Harmonic { amplitude: 0.01, wavelength: 1.0 }));
-    let laws = Laws { profile, penalty: Some(50.0), friction: Some(friction), wear: None };
+    let laws = Laws { profile, penalty: Some(50.0), friction: Some(friction), wear: None, adhesion: None };
     Interface::new(layer.face(), laws, quadrature)
 }
 
@@ -86,7 +86,7 @@ fn elevation_of_the_face_enters_the_gap() {
             Ok(Height { height: 0.0, gradient: Vector2::zeros() })
         }
     }
-    let laws = Laws { profile: Box::new(Flat), penalty: Some(50.0), friction: None, wear: None };
+    let laws = Laws { profile: Box::new(Flat), penalty: Some(50.0), friction: None, wear: None, adhesion: None };
     let mut face = arch::<2>();
     let upright = |facet: &Facet<2>| (facet.corners[1] - facet.corners[0]).normalize().x;
     let upright = [upright(&face.facets[0]), upright(&face.facets[7])];
@@ -177,6 +177,7 @@ fn a_kink_has_the_slope_of_the_side_in_contact() {
         penalty: Some(1.0),
         friction: None,
         wear: None,
+        adhesion: None,
     };
     let face = interface::<2>(Quadrature::Nodal, Sides::Free).face;
     let mut interface = Interface::new(face, laws, Quadrature::Nodal);

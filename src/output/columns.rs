@@ -149,11 +149,14 @@ pub struct Extra {
     pub worn_profile: bool,
     /// The temperature of the body; also of its fields.
     pub heat: bool,
+    /// What adhesion takes of the balance.
+    pub adhesion: bool,
 }
 
 impl Extra {
     /// What all rows can have.
-    pub const ALL: Self = Self { energy: true, mounts: [true; 2], wear: true, worn_profile: true, heat: true };
+    pub const ALL: Self =
+        Self { energy: true, mounts: [true; 2], wear: true, worn_profile: true, heat: true, adhesion: true };
 }
 
 /// The columns of `/history`. `time` is the last: the lengths reach the file in this order (see [`super`]).
@@ -207,6 +210,13 @@ const WORN: Column = real("worn_volume", "m^2", "volume that has worn off, per u
 const WEAR_ENERGY: Column =
     real("energy/wear", "J/m", "work of the pressure on what it wore off since t = 0", |r| &mut r.energy.wear);
 
+/// What adhesion takes of the energy balance.
+#[rustfmt::skip]
+const ADHESION_ENERGY: &[Column] = &[
+    real("energy/adhesion", "J/m", "energy stored in the attraction, 0 at t = 0", |r| &mut r.energy.adhesion),
+    real("energy/jumps", "J/m", "work of the attraction on the gaps beyond what it stored, since t = 0: dissipated in jumps", |r| &mut r.energy.jumps),
+];
+
 /// The temperature of the body.
 #[rustfmt::skip]
 const HEAT: &[Column] = &[
@@ -224,7 +234,9 @@ const HEAT_ENERGY: &[Column] = &[
 ];
 
 /// All history columns of a run, `time` last.
-pub(super) fn history(Extra { energy, mounts, wear, heat, .. }: Extra) -> impl Iterator<Item = &'static Column> {
+pub(super) fn history(
+    Extra { energy, mounts, wear, heat, adhesion, .. }: Extra,
+) -> impl Iterator<Item = &'static Column> {
     let mounted = energy && mounts != [false; 2];
     let ends = MOUNTS.iter().zip(mounts).filter_map(|(column, there)| there.then_some(column));
     let energies = ENERGY.iter().filter(move |_| energy).chain(MOUNT_ENERGY.iter().filter(move |_| mounted));
@@ -232,7 +244,8 @@ pub(super) fn history(Extra { energy, mounts, wear, heat, .. }: Extra) -> impl I
         .into_iter()
         .filter_map(|(column, there)| there.then_some(column));
     let warm = HEAT_ENERGY.iter().filter(move |_| heat && energy).chain(HEAT.iter().filter(move |_| heat));
-    energies.chain(worn).chain(ends).chain(warm).chain(HISTORY)
+    let pulled = ADHESION_ENERGY.iter().filter(move |_| adhesion && energy);
+    energies.chain(worn).chain(pulled).chain(ends).chain(warm).chain(HISTORY)
 }
 
 /// Whether a column has a component for each direction of the face.

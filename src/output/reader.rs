@@ -94,8 +94,9 @@ impl Results {
     pub fn extra(&self) -> Extra {
         let mounts = ["mount_normal", "mount_tangential"].map(|column| self.has(&format!("history/{column}")));
         let (wear, worn_profile) = (self.has("history/worn_volume"), self.has("interface/worn_profile"));
-        let [energy, heat] = ["energy/stored", "max_temperature"].map(|column| self.has(&format!("history/{column}")));
-        Extra { energy, mounts, wear, worn_profile, heat }
+        let [energy, heat, adhesion] = ["energy/stored", "max_temperature", "energy/adhesion"]
+            .map(|column| self.has(&format!("history/{column}")));
+        Extra { energy, mounts, wear, worn_profile, heat, adhesion }
     }
 
     /// Whether the file has the dataset, such as `history/energy/stored` or `bulk/stress`.

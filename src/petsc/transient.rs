@@ -149,6 +149,8 @@ pub struct Settings {
     pub linear: Linear,
     /// Newton iterations per attempt before the step is cut.
     pub max_newton: usize,
+    /// Linear systems of an attempt that may not be solved to what was asked before the step is cut; at least 1.
+    pub max_unsolved: usize,
     /// How long Newton's steps are.
     pub search: Search,
 }
@@ -209,6 +211,7 @@ impl Integrator {
             check(ffi::TSAdaptSetType(adapt, c"none".as_ptr()))?;
             check(ffi::TSGetSNES(ts, &mut snes))?;
             check(ffi::SNESSetTolerances(snes, 0.0, 0.0, 0.0, count(settings.max_newton)?, -1))?;
+            check(ffi::SNESSetMaxLinearSolveFailures(snes, count(settings.max_unsolved)?))?;
             check(ffi::SNESGetLineSearch(snes, &mut search))?;
             // Where friction turns between stick and slip the norm must rise before it falls, and backtracking stalls.
             let line_search = match settings.search {

@@ -4,10 +4,10 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use super::keys::tables::{IN_PLANE, IN_SPACE};
+use super::keys::tables::{COMPRESSIVE, IN_PLANE, IN_SPACE};
 use super::{
-    Arm, Body, Extend, Friction, Heat, Indenter, Law, Layer, Material, Memory, MeshFile, Motion, Phase, Quadrature,
-    Scene, Sides, Span, Stepping, Strategy, WearLaw, Wearing, When, keys,
+    Arm, Body, Bond, Extend, Friction, Heat, Indenter, Law, Layer, Material, Memory, MeshFile, Motion, Phase,
+    Quadrature, Scene, Sides, Span, Stepping, Strategy, WearLaw, Wearing, When, keys,
 };
 use crate::error::{Error, Result};
 
@@ -26,7 +26,9 @@ pub(super) fn all(scene: &Scene, file: &Path) -> Result<()> {
         .and_then(|()| adaptive(scene))
         .and_then(|()| exact_laws(scene))
         .and_then(|()| load(scene))
+        .and_then(|()| pull(scene))
         .and_then(|()| wear(scene))
+        .and_then(|()| adhesion(scene))
         .and_then(|()| heat(scene))
         .and_then(|()| scene.phases.iter().try_for_each(|phase| approach(phase, scene)))
         .and_then(|()| moments(&scene.output.bulk_at, &scene.phases))
@@ -304,6 +306,46 @@ fn load(scene: &Scene) -> Check {
 /// The key by which a phase says its force.
 fn force_key(phase: &Phase) -> String {
     format!("phase.{}.{}", phase.name, if phase.record().is_some() { "motion" } else { "normal_force" })
+}
+
+/// Only what adheres can be pulled.
+fn pull(scene: &Scene) -> Check {
+    let pulls = |phase: &&Phase| phase.normal_force.is_some_and(|force| force < 0.0);
+    match scene.phases.iter().find(pulls).filter(|_| scene.adhesion.is_none()) {
+        Some(phase) => {
+            let got = phase.normal_force.unwrap_or_default();
+            fail(&force_key(phase), format!("must be {COMPRESSIVE}, got {got:?}; a pull needs [adhesion]"))
+        }
+        None => Ok(()),
+    }
+}
+
+/// A point adheres at a node, by the tractions there, in planned steps; what a closed gap bears is part of friction.
+fn adhesion(scene: &Scene) -> Check {
+    let Some(adhesion) = &scene.adhesion else { return Ok(()) };
+    if scene.solver.strategy == Strategy::Monolithic {
+        return fail("adhesion", "is not solved by the strategy \"monolithic\"; use \"condensed\"");
+    }
+    if scene.contact.quadrature == Quadrature::Gauss {
+        return fail("adhesion", "is not solved with \"gauss\" quadrature; use \"nodal\"");
+    }
+    if scene.wear.is_some() {
+        return fail("adhesion", "is not solved beside [wear] yet; leave one of them out");
+    }
+    if scene.is_adaptive() {
+        return fail("adhesion", "is not solved in adaptive steps, which no jump has; give steps in all phases");
+    }
+    let strength = 2.0 * adhesion.work / adhesion.range;
+    if !(strength.is_finite() && (strength / adhesion.range).is_finite() && strength > 0.0) {
+        return fail("adhesion.range", "gives with adhesion.work a traction that is no number; give another");
+    }
+    match adhesion.friction {
+        Bond::ShearStrength(_) if scene.friction.is_none() => {
+            let reason = "shear_strength is part of friction: give [friction] (coefficient = 0 leaves nothing else), or \"none\"";
+            fail("adhesion.friction", reason)
+        }
+        _ => Ok(()),
+    }
 }
 
 /// A point wears at a node, by the tractions there; an indenter on the even nodes of a layer.

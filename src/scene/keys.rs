@@ -116,6 +116,16 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// A table, or none for a word or where there is neither.
+    pub fn word_or_section(&self, key: &str, word: &str) -> Result<Option<Section<'a>>> {
+        match self.table.get(key) {
+            None => Ok(None),
+            Some(Value::String(text)) if text == word => Ok(None),
+            Some(Value::Table(table)) => Ok(Some(self.child(key, self.path_of(key), table)?)),
+            Some(value) => Err(self.must_be(key, self.what(key), value)),
+        }
+    }
+
     /// What a number at the key must be.
     fn quantity(&self, key: &str) -> Result<Quantity> {
         match self.key(key)?.kind {

@@ -3,6 +3,7 @@
 //! The only place that knows a key's name. All quantities are SI; every number here is finite and within the range
 //! its field states, because [`read`] refuses a file that says otherwise.
 
+mod adhesion;
 mod checks;
 mod differences;
 mod document;
@@ -29,6 +30,7 @@ use std::path::PathBuf;
 use nalgebra::Vector2;
 use serde::Serialize;
 
+pub use adhesion::{Adhesion, AdhesionLaw, Bond};
 pub use checks::whole_periods;
 pub use differences::{differences, obstacles};
 pub use document::parse;
@@ -71,6 +73,9 @@ pub struct Scene {
     /// How the contact wears; none = not at all.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wear: Option<Wear>,
+    /// What the surfaces pull each other with across a gap; none = not at all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub adhesion: Option<Adhesion>,
     /// The loading history, in order; never empty.
     #[serde(rename = "phase")]
     pub phases: Vec<Phase>,

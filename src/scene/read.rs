@@ -1,6 +1,7 @@
 //! The keys of a scene: which there are, what each accepts, and what it becomes. What one key has to do with another
 //! is in `checks`.
 
+mod adhesion;
 mod body;
 mod friction;
 mod heat;
@@ -47,6 +48,7 @@ pub fn scene(table: &Table, file: &Path) -> Result<Scene> {
         heat: root.optional_section("heat")?.as_ref().map(heat::read).transpose()?,
         mount: root.optional_section("mount")?.as_ref().map(mount::read).transpose()?,
         wear: root.optional_section("wear")?.as_ref().map(wear::read).transpose()?,
+        adhesion: root.optional_section("adhesion")?.as_ref().map(adhesion::read).transpose()?,
         phases,
         solver: solver(solver_section.as_ref(), preset)?,
         output: output(root.optional_section("output")?.as_ref(), every)?,

@@ -110,6 +110,9 @@ fn kind(kind: &Kind) -> Value {
     match kind {
         Kind::Number(quantity) => number(*quantity),
         Kind::NumberOrFormula(quantity) => json!({ "anyOf": [number(*quantity), { "type": "string" }] }),
+        Kind::WordOrTable(word, keys, _) => {
+            json!({ "if": { "type": "string" }, "then": { "const": word }, "else": table(keys) })
+        }
         Kind::NumberOrWord(quantity, word, _) => json!({ "anyOf": [number(*quantity), { "const": word }] }),
         Kind::Curves(_) => {
             let point = json!({ "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 });

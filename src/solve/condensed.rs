@@ -6,6 +6,7 @@
 //! and what is decided is decided by totals over all.
 
 mod checkpoint;
+mod jump;
 mod linear;
 
 use mpi::topology::SimpleCommunicator;
@@ -24,6 +25,7 @@ use crate::loading::{DIRECTIONS, Mount, Phase, Placement, Support};
 use crate::parallel::{Team, share_numbers};
 use crate::petsc::{Gather, Matrix, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
+use jump::Jump;
 use linear::Linear;
 
 /// Faces with more components than this are solved by GMRES: of a periodic layer with a preconditioner by Fourier
@@ -92,6 +94,9 @@ impl Freedom {
     }
 }
 
+/// What [`Condensed::along`] gives.
+type Gone<const D: usize> = (Vec<SVector<f64, D>>, Vec<SVector<f64, D>>, SVector<f64, D>);
+
 /// The points of the contact in one step.
 struct Stage<const D: usize> {
     step: Step,
@@ -107,6 +112,8 @@ struct Stage<const D: usize> {
     first: Option<f64>,
     /// Newton steps so far.
     newton: usize,
+    /// The jump that is followed, where something adheres.
+    jump: Option<Jump<D>>,
     /// What a point is to slip, m, if it goes on as it did and follows what moves the indenter.
     usual: f64,
 }
@@ -162,7 +169,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         let still = placement.is_still()
             && self.face.interface.friction().is_none_or(Law::rests)
             && self.team().all_say(self.displaced(&self.accepted)?.0 == self.face.displacement());
-        self.stage = Some(Stage { step, placement, still, sites, trial, first: None, newton: 0, usual });
+        self.stage = Some(Stage { step, placement, still, sites, trial, first: None, newton: 0, jump: None, usual });
         Ok(())
     }
 
@@ -242,6 +249,9 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
                 self.accepted.iter().zip(changes).map(|(now, change)| now + change * share).collect()
             }
         };
+        if self.face.interface.adhesion().is_some() {
+            return write(u, predicted.into_iter());
+        }
         // No tension.
         let pressed =
             predicted.iter().zip(points.all()).map(|(t, point)| t - point.normal * point.normal.dot(t).max(0.0));
@@ -251,6 +261,14 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
     /// How far the indenter has gone from its placement, m, by a vector of the unknowns.
     fn shift(&self, sites: &Sites<D>, u: &Vector) -> Result<SVector<f64, D>> {
         Ok(traction::shift::<D>(self.last(u)?) / sites.modulus())
+    }
+
+    /// What a Newton step takes off: tractions, motions, and how far the indenter goes.
+    fn along(&self, behind: &Behind<'_, D>, sites: &Sites<D>, decrement: &Vector) -> Result<Gone<D>> {
+        let (gone, decrement) = (self.shift(sites, decrement)?, tractions::<D>(decrement)?);
+        let moves = behind.moves(&decrement)?;
+        let moved = moves.iter().zip(sites).map(|(moved, site)| moved + traction::against(site, &gone)).collect();
+        Ok((decrement, moved, gone))
     }
 
     /// The last entries of the vector of a state.
@@ -267,6 +285,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
             penalty: interface.penalty(),
             friction: interface.friction(),
             wear: interface.wear(),
+            adhesion: interface.adhesion(),
             dt: stage.step.dt,
             resolution: 0.0,
             held: Held { supports: stage.placement.supports, profile: Some(&profile) },
@@ -413,17 +432,16 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
         let astray = stage.newton == PATIENCE && !self.reuse;
         let stage = self.stage.as_ref().ok_or_else(unprepared)?;
         let outcome = match self.behind() {
+            Some(_) if self.jumps(stage, decrement)? => self.jump(decrement)?,
             Some(_) if astray => self.start(stage.trial.clone())?,
             Some(behind) => {
                 let sites = &stage.sites;
-                let (gone, decrement) = (self.shift(sites, decrement)?, tractions::<D>(decrement)?);
-                let moves = behind.moves(&decrement)?;
-                let moved: Vec<_> =
-                    moves.iter().zip(sites).map(|(moved, site)| moved + traction::against(site, &gone)).collect();
-                let along = (&decrement[..], &moved[..], gone);
+                let (taken, moved, gone) = self.along(&behind, sites, decrement)?;
+                let along = (&taken[..], &moved[..], gone);
                 // On the way down to a touch nothing says how far.
                 let touches = stage.trial.in_contact() > 0;
-                let falls = stage.placement.supports[0].is_some_and(|support| support.is_force()) && !touches;
+                let forced = stage.placement.supports[0].is_some_and(|support| support.is_force());
+                let falls = forced && !touches && self.face.interface.adhesion().is_none();
                 self.with_laws(stage, |laws| match falls {
                     true => stage.trial.taken(sites, along, (1.0, laws)),
                     false => traction::length(sites, &stage.trial, along, laws).0,
@@ -431,6 +449,7 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
             }
             None => stage.trial.clone(),
         };
+        let stage = self.stage.as_ref().ok_or_else(unprepared)?;
         write(u, outcome.tractions.iter().copied())?;
         self.write_last(Self::entries(&stage.sites, &outcome.shift), u)?;
         self.tried(outcome, f)
@@ -441,7 +460,8 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
     /// round-off, or nothing moves: what the accepted tractions then leave is of the step before, which was allowed it.
     fn test(&mut self, iteration: usize, _norm: f64) -> Verdict {
         let mut verdict = 0;
-        if let Some(stage) = self.stage.as_ref().filter(|stage| !stage.sites.is_empty()) {
+        let there = |stage: &&Stage<D>| !stage.sites.is_empty() && stage.jump.as_ref().is_none_or(Jump::is_free);
+        if let Some(stage) = self.stage.as_ref().filter(there) {
             let Stage { trial, first, .. } = stage;
             let norm = trial.norm();
             let scale = self.scale.max(trial.size());

@@ -11,6 +11,8 @@ use crate::snapshot::Snapshot;
 
 /// Newton iterations per attempt: from stick to slip under a sharp regularisation a step takes up to fifty.
 pub const MAX_NEWTON: usize = 60;
+/// The same where a contact may jump, which is followed on the way.
+pub const MAX_NEWTON_OF_JUMPS: usize = 400;
 
 /// How often in succession a step may be cut by four.
 const MAX_CUTS: usize = 8;

@@ -24,7 +24,7 @@ use crate::snapshot::Snapshot;
 
 pub use body::{Body, Moduli, Region, Solid};
 pub use condensed::{Condensed, Freedom, LARGE_FACE, LARGE_PERIODIC_FACE, Way};
-pub use driver::{Counts, Driver, MAX_NEWTON, Position};
+pub use driver::{Counts, Driver, MAX_NEWTON, MAX_NEWTON_OF_JUMPS, Position};
 pub use heat::{Convection, Heat, Heated, Medium, Thermal};
 pub use monolithic::{Bordered, Monolithic};
 pub use response::{

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use crate::error::{Error, Result};
 use crate::oracle::transient::{self, Update};
 use crate::oracle::{Harmonic, Layer, Moduli, PoissonRule, Solid, steady};
-use crate::scene::{self, Friction, Law, Scene, Source, Wear};
+use crate::scene::{self, Adhesion, Friction, Law, Scene, Source, Wear};
 
 /// A periodic layer, an indenter and its motion. Lengths in m, stresses in Pa.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +31,8 @@ pub struct Setting {
     pub friction: Option<Friction>,
     /// None = nothing wears.
     pub wear: Option<Wear>,
+    /// What pulls.
+    pub adhesion: Option<Adhesion>,
     /// Whether the elements are those for Poisson ratios near 1/2.
     pub mean_dilatation: bool,
     /// The table of what is between the indenter and what moves it.
@@ -114,6 +116,7 @@ impl Setting {
             penalty: Some(1e8),
             friction: None,
             wear: None,
+            adhesion: None,
             mean_dilatation: false,
             mount: None,
             phases,
@@ -182,6 +185,9 @@ impl Setting {
         }
         if let Some(mount) = self.mount {
             let _ = writeln!(text, "[mount]\n{mount}");
+        }
+        if let Some(adhesion) = &self.adhesion {
+            let _ = writeln!(text, "[adhesion]\n{}", toml::to_string(adhesion).unwrap_or_default());
         }
         if let Some(wear) = &self.wear {
             let _ = writeln!(text, "[wear]\n{}", toml::to_string(wear).unwrap_or_default());

@@ -13,10 +13,10 @@ pub const FEWEST_NODES: f64 = 3.0;
 /// The share of the compliance, to a wave as long as the contact, that the penalty may add.
 pub const MOST_PENALTY: f64 = 0.05;
 
-/// The indenter stays above the face throughout; a force brings it there.
+/// The indenter stays above the face throughout; a force, or adhesion, brings it there.
 pub fn never_touches(before: &Before<'_>) -> Option<Warning> {
     let deepest = before.encounters.deepest();
-    if deepest.overlap > 0.0 || before.scene.is_loaded() {
+    if deepest.overlap > 0.0 || before.scene.is_loaded() || before.scene.adhesion.is_some() {
         return None;
     }
     let text = format!(

@@ -78,6 +78,8 @@ pub fn row(i: usize) -> HistoryRow {
             friction_dissipation: 14.0 * v,
             penalty: 15.0 * v,
             wear: 25.0 * v,
+            adhesion: 32.0 * v,
+            jumps: 33.0 * v,
             imbalance: 16.0 * v,
             mounts: MountEnergy { spring: 19.0 * v, dashpot: 20.0 * v, kinetic: 21.0 * v },
         },
@@ -90,7 +92,9 @@ pub fn row(i: usize) -> HistoryRow {
 }
 
 /// The real columns of [`row`] other than time, with their factors.
-pub const COLUMNS: [(&str, f64); 30] = [
+pub const COLUMNS: [(&str, f64); 32] = [
+    ("energy/adhesion", 32.0),
+    ("energy/jumps", 33.0),
     ("energy/wear", 25.0),
     ("worn_volume", 24.0),
     ("max_temperature", 26.0),

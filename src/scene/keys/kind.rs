@@ -49,6 +49,8 @@ pub(crate) enum Kind {
     NumberOrFormula(Quantity),
     /// Such a number, or this word; what that is.
     NumberOrWord(Quantity, &'static str, &'static str),
+    /// This word, or a table; what that is.
+    WordOrTable(&'static str, &'static Keys, &'static str),
     /// A table of arrays of points.
     Curves(&'static str),
     /// A whole number of this range, its ends included.
@@ -97,6 +99,7 @@ impl Kind {
         match self {
             Self::Number(quantity) | Self::OneOrTwo(quantity) | Self::NumberOrFormula(quantity) => quantity.what,
             Self::NumberOrWord(_, _, what)
+            | Self::WordOrTable(_, _, what)
             | Self::Count(what, _)
             | Self::Cells([what, _], _)
             | Self::Curves(what)
@@ -118,9 +121,11 @@ impl Kind {
     /// The keys of the table that it is.
     pub fn table(&self) -> Option<&'static Keys> {
         match self {
-            Self::Table(keys) | Self::FileOrTable(_, keys) | Self::Tables(_, keys) | Self::OneOrTables(keys) => {
-                Some(keys)
-            }
+            Self::Table(keys)
+            | Self::WordOrTable(_, keys, _)
+            | Self::FileOrTable(_, keys)
+            | Self::Tables(_, keys)
+            | Self::OneOrTables(keys) => Some(keys),
             _ => None,
         }
     }

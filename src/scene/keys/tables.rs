@@ -5,9 +5,10 @@ use Bound::{At, Beyond};
 
 use super::kind::{Decision, Key, Keys, Kind};
 use super::quantity::{Bound, Quantity};
+use crate::scene::adhesion::{NONE as NO_BOND, SHEAR_STRENGTH};
 use crate::scene::heat::INSULATED;
 use crate::scene::{
-    Detrend, Element, Extend, Memory, PoissonRule, Quadrature, Seam, Sides, Strategy, WearLaw, Wearing,
+    AdhesionLaw, Detrend, Element, Extend, Memory, PoissonRule, Quadrature, Seam, Sides, Strategy, WearLaw, Wearing,
 };
 
 const fn table(about: &'static str, keys: &'static [Key]) -> Keys {
@@ -44,6 +45,9 @@ const POSITION: Quantity = Quantity::any("a position in m");
 const SLOPE: Quantity = Quantity::positive("a positive slope");
 const TOLERANCE: Quantity = Quantity::within("a relative tolerance above 0 and below 1", Beyond(0.0), Beyond(1.0));
 
+/// Of a normal force, unless there is adhesion.
+pub(crate) const COMPRESSIVE: &str = "a compressive force in N/m, at least 0";
+
 /// A scene.
 pub(crate) static SCENE: Keys = table(
     "A scene of mpjr: a rigid indenter, the body that it is pressed into, and the loading history. SI units.",
@@ -59,6 +63,7 @@ pub(crate) static SCENE: Keys = table(
         Key::new("heat", Kind::Table(&HEAT)),
         Key::new("mount", Kind::Table(&MOUNT)),
         Key::new("wear", Kind::Table(&WEAR)),
+        Key::new("adhesion", Kind::Table(&ADHESION)),
         Key::new("phase", Kind::Tables("an array of tables, [[phase]]", &PHASE)).required(),
         Key::new("solver", Kind::Table(&SOLVER)),
         Key::new("output", Kind::Table(&OUTPUT)),
@@ -408,6 +413,29 @@ static WEAR: Keys = table(
     ],
 );
 
+pub(crate) const ADHESION_LAWS: [(&str, AdhesionLaw); 3] =
+    [("exponential", AdhesionLaw::Exponential), ("bilinear", AdhesionLaw::Bilinear), ("dugdale", AdhesionLaw::Dugdale)];
+
+static ADHESION: Keys = table(
+    "What the surfaces pull each other with across a gap. Without this table nothing does.",
+    &[
+        choice("law", &words(&ADHESION_LAWS)).required().about("how the pull falls with the gap"),
+        number("work", Quantity::positive("a positive work of adhesion in J/m^2")).required(),
+        number("range", LENGTH).required().about("over which the pull falls"),
+        Key::new(
+            "friction",
+            Kind::WordOrTable(NO_BOND, &BOND, "\"none\", or a table such as { shear_strength = 1e4 } (Pa)"),
+        )
+        .default("\"none\"")
+        .about("what a closed gap bears along the face without pressure"),
+    ],
+);
+
+static BOND: Keys = table(
+    "What a closed gap bears along the face besides coefficient x p.",
+    &[number(SHEAR_STRENGTH, Quantity::positive("a positive shear strength in Pa")).required()],
+);
+
 static PHASE: Keys = table(
     "A phase of the loading history, from where the one before left the indenter.",
     &[
@@ -417,8 +445,9 @@ static PHASE: Keys = table(
             .about("equal ones; or tolerance"),
         number("tolerance", TOLERANCE).about("instead of steps: that of adaptive ones"),
         number("approach", Quantity::any("a normal approach in m")).about("at the end of the phase, linear in time"),
-        number("normal_force", Quantity::within("a compressive force in N/m, at least 0", At(0.0), Bound::None))
-            .about("instead of approach: at the end of the phase, linear in time"),
+        number("normal_force", Quantity::any(COMPRESSIVE)).about(
+            "instead of approach: at the end of the phase, linear in time; below 0, a pull, only with [adhesion]",
+        ),
         one_or_two("velocity", Quantity::any("a velocity in m/s")).default("0.0").about("of the indenter along +x"),
         number("distance", Quantity::positive("a positive distance in m")).about("instead of duration"),
         Key::new("tangential", Kind::Table(&TANGENTIAL)),

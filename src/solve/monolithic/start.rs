@@ -95,6 +95,7 @@ impl<const D: usize> Monolithic<D> {
             penalty: interface.penalty(),
             friction: interface.friction(),
             wear: None,
+            adhesion: None,
             dt: step.dt,
             resolution,
             held: Held { supports: placement.supports, profile: Some(&profile) },

@@ -176,7 +176,7 @@ impl<const D: usize> Behind<'_, D> {
         let interface = self.interface;
         let Placement { approach, dt, .. } = placement;
         let way = placement.way();
-        let falls = self.falls(dt);
+        let (falls, law) = (self.falls(dt), interface.adhesion());
         // All nodes of a flat periodic face are alike.
         let alike =
             self.compliance.waves().is_some() && interface.points().are_flat() && !interface.points().share_nodes();
@@ -197,7 +197,8 @@ impl<const D: usize> Behind<'_, D> {
                 elastic,
                 slid,
                 temperature,
-                moduli: first.unwrap_or_else(|| moduli(i)).above(falls(slid, temperature)),
+                moduli: first.unwrap_or_else(|| moduli(i)).above(falls(slid, temperature)).above_adhesion(law),
+                damping: None,
                 lengths: [
                     moved.max(approach.abs()).max(height.min(2.0 * approach.abs())),
                     moved.max(past.norm()).max(way.norm()),

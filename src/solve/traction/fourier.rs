@@ -124,19 +124,21 @@ impl Fourier {
     }
 }
 
-/// 1 - theta and theta rho_n: the same of all points but where they wear, each as much as it slips; then their means.
+/// 1 - theta and theta rho_n: the same of all points but where they wear, each as much as it slips, or are pulled; then their means. What
+/// pulls across a gap counts for none: the face is to be stiff where it is closed.
 fn normal<'a, const D: usize, I: Iterator<Item = &'a Linearised<D>>>(team: &Team, active: impl Fn() -> I) -> [f64; 2] {
-    let wears = active().any(|point| point.wearing != [0.0; 2]);
-    let first = active().next().map_or([f64::NEG_INFINITY; 2], |point| [point.soft, point.stiff]);
-    let [soft, stiff, wears] = team.most([first[0], first[1], f64::from(u8::from(wears))]);
+    let pressed = || active().filter(|point| point.stiff > 0.0);
+    let first = pressed().next().map_or([f64::NEG_INFINITY; 2], |point| [point.soft, point.stiff]);
+    let varies = pressed().any(|point| point.wearing != [0.0; 2] || point.stiff != first[1]);
+    let [soft, stiff, varies] = team.most([first[0], first[1], f64::from(u8::from(varies))]);
     if soft == f64::NEG_INFINITY {
         return [1.0, 0.0];
     }
-    if wears == 0.0 {
+    if varies == 0.0 {
         return [soft, stiff];
     }
-    let (soft, stiff) = active().fold((0.0, 0.0), |sum, point| (sum.0 + point.soft, sum.1 + point.stiff));
-    let [soft, stiff, count] = team.sum([soft, stiff, active().count() as f64]);
+    let (soft, stiff) = pressed().fold((0.0, 0.0), |sum, point| (sum.0 + point.soft, sum.1 + point.stiff));
+    let [soft, stiff, count] = team.sum([soft, stiff, pressed().count() as f64]);
     [soft / count, stiff / count]
 }
 

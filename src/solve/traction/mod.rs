@@ -5,7 +5,7 @@
 //! rho > 0 make of the laws a projection:
 //!
 //! ```text
-//! p* = alpha/(alpha + rho_n) max(p + rho_n o, 0)                    where nothing wears; else see `worn`
+//! p* = alpha/(alpha + rho_n) max(p + rho_n o, 0)                    where nothing wears or pulls; else see `worn`, crate::adhesion
 //! q* = |q|(m) e,    m >= 0 where |q|(m) + rho_t m = |q + rho_t s|,    e along q + rho_t s
 //! G  = t - t*
 //! ```
@@ -14,6 +14,7 @@
 //! (1991) 353, with the laws' own softness). No penetration, alpha = infinity, and Coulomb's law itself are ordinary values:
 //! nothing stiff is left in G. Newton's method on it is `linear`.
 
+mod adhesive;
 mod behind;
 mod bounded;
 mod continuation;
@@ -30,11 +31,14 @@ mod worn;
 
 use nalgebra::SVector;
 
+use crate::adhesion;
 use crate::element::mpjr::Relative;
 use crate::friction::{Circumstances, Law, Met};
 use crate::interface::State;
 use crate::wear::Wear;
 
+pub use adhesive::Damping;
+use adhesive::bears;
 pub use behind::Behind;
 pub use bounded::pressures;
 pub use continuation::start;
@@ -44,7 +48,7 @@ pub use fourier::Fourier;
 pub use held::{Border, Held, Over, against, axis, column, down_to, in_plane, places, shift, steepening, touch, up};
 pub use linear::{Linearised, product};
 pub use pressed::approach_under;
-pub use search::{Operator, Outcome, length, settle};
+pub use search::{Along, Operator, Outcome, length, settle};
 pub use sites::Sites;
 
 /// A point of the contact during a step.
@@ -66,6 +70,8 @@ pub struct Site<const D: usize> {
     pub temperature: f64,
     /// What the layer's answer to the point's own traction asks for.
     pub moduli: Moduli,
+    /// What holds its overlap back while a jump is followed; none = nothing.
+    pub damping: Option<Damping>,
     /// What the digits of o and of s are taken from, m.
     pub lengths: [f64; 2],
 }
@@ -84,6 +90,11 @@ impl Moduli {
     fn above(self, fall: f64) -> Self {
         Self { tangential: self.tangential.map(|rho| rho.max(2.0 * fall)), ..self }
     }
+
+    /// With a normal one of twice the steepest fall of adhesion at least.
+    fn above_adhesion(self, law: Option<&dyn adhesion::Law>) -> Self {
+        Self { normal: law.map_or(self.normal, |law| self.normal.max(2.0 * law.steepest_fall())), ..self }
+    }
 }
 
 /// The laws of a step.
@@ -95,6 +106,8 @@ pub struct Laws<'a> {
     pub friction: Option<&'a dyn Law>,
     /// None = nothing wears.
     pub wear: Option<Wear>,
+    /// None = nothing pulls.
+    pub adhesion: Option<&'a dyn adhesion::Law>,
     /// The length of the step, s.
     pub dt: f64,
     /// See [`Circumstances::resolution`], m: 0 but where displacements are to say the same.
@@ -112,8 +125,10 @@ pub struct Answer<const D: usize> {
     pub shear: SVector<f64, D>,
     /// G = t - t*, Pa.
     pub excess: SVector<f64, D>,
-    /// Whether p + rho_n o > 0: the point is in contact.
+    /// Whether its pressure is one of the unknowns: where nothing pulls, whether p + rho_n o > 0, the point in contact.
     pub active: bool,
+    /// The gap, m; 0 where it is closed, or the point is not active.
+    pub gap: f64,
     /// theta = alpha/(alpha + rho_n), less where it wears, and 1 - theta to all its digits.
     pub stiff: f64,
     /// See `stiff`.
@@ -155,6 +170,9 @@ impl<const D: usize> Site<D> {
         let trial = pressure + rho * overlap;
         let mut answer = Answer::open(*traction, slip);
         answer.noise = (f64::EPSILON * (pressure.abs() + rho * self.lengths[0])).powi(2);
+        if let Some(law) = laws.adhesion {
+            return self.adhere((law, trial, overlap), (pressure, shear, slip), laws, answer);
+        }
         if trial <= 0.0 {
             return answer;
         }
@@ -265,6 +283,7 @@ impl<const D: usize> Answer<D> {
             shear: SVector::zeros(),
             excess: traction,
             active: false,
+            gap: 0.0,
             stiff: 0.0,
             soft: 1.0,
             grip: [0.0; 2],
@@ -286,6 +305,17 @@ impl<const D: usize> Answer<D> {
         past + site.normal * (site.clearance + self.pressure / penalty - site.normal.dot(&past))
     }
 
+    /// Whether its gap is closed.
+    pub fn touches(&self) -> bool {
+        self.active && self.gap == 0.0
+    }
+
+    /// o as the laws leave it, m; only of an active point.
+    fn overlap(&self, laws: Laws<'_>) -> f64 {
+        let more = laws.adhesion.map_or(0.0, adhesion::Law::strength);
+        if self.gap > 0.0 { -self.gap } else { laws.penalty.map_or(0.0, |alpha| (self.pressure + more) / alpha) }
+    }
+
     /// t* = q* - p* n, Pa.
     pub fn met(&self, site: &Site<D>) -> SVector<f64, D> {
         self.shear - site.normal * self.pressure
@@ -299,16 +329,16 @@ impl<const D: usize> Answer<D> {
             let State { slid, worn, .. } = *before;
             return State { overlap: overlap.min(0.0), slip: of_step, slid, worn, ..State::default() };
         }
+        let slides = laws.friction.filter(|_| self.touches());
+        let holds = laws.friction.filter(|law| bears(*law, self.pressure));
         State {
             worn: before.worn + self.worn,
-            slid: before.slid + laws.friction.map_or(0.0, |law| law.lasting(self.slip.norm()).length),
+            slid: before.slid + slides.map_or(0.0, |law| law.lasting(self.slip.norm()).length),
             pressure: self.pressure,
             shear: self.shear,
-            overlap: laws.penalty.map_or(0.0, |alpha| self.pressure / alpha),
+            overlap: self.overlap(laws),
             slip: of_step,
-            stuck: laws
-                .friction
-                .map_or(SVector::zeros(), |law| before.stuck_after(law, self.sticks, (self.slip, of_step))),
+            stuck: holds.map_or(SVector::zeros(), |law| before.stuck_after(law, self.sticks, (self.slip, of_step))),
             sticks: self.sticks,
         }
     }

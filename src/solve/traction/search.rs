@@ -43,7 +43,7 @@ struct Sums {
     tractions: f64,
     noise: f64,
     /// How many are in contact.
-    active: f64,
+    touching: f64,
 }
 
 impl Sums {
@@ -54,16 +54,17 @@ impl Sums {
             sums.excess += site.weight * answer.excess.norm_squared();
             sums.tractions += site.weight * t.norm_squared();
             sums.noise += site.weight * answer.noise;
-            sums.active += f64::from(u8::from(answer.active));
+            sums.touching += f64::from(u8::from(answer.touches()));
         }
         sums
     }
 
     /// Over those of all, and the sums of the forces. Collective.
     fn everywhere<const D: usize>(self, sites: &Sites<D>, [a, b, c]: [f64; DIRECTIONS]) -> (Self, [f64; DIRECTIONS]) {
-        let Self { excess, tractions, noise, active } = self;
-        let [excess, tractions, noise, active, a, b, c] = sites.team().sum([excess, tractions, noise, active, a, b, c]);
-        (Self { excess, tractions, noise, active }, [a, b, c])
+        let Self { excess, tractions, noise, touching } = self;
+        let [excess, tractions, noise, touching, a, b, c] =
+            sites.team().sum([excess, tractions, noise, touching, a, b, c]);
+        (Self { excess, tractions, noise, touching }, [a, b, c])
     }
 }
 
@@ -183,7 +184,7 @@ impl<const D: usize> Outcome<D> {
 
     /// How many points are in contact.
     pub fn in_contact(&self) -> usize {
-        self.sums.active as usize
+        self.sums.touching as usize
     }
 }
 

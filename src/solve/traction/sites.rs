@@ -30,6 +30,11 @@ impl<const D: usize> Sites<D> {
         Self::new(Vec::new(), Team::alone())
     }
 
+    /// Each of this rank, to change what no total depends on.
+    pub fn each(&mut self) -> std::slice::IterMut<'_, Site<D>> {
+        self.all.iter_mut()
+    }
+
     /// The ranks that share them.
     pub fn team(&self) -> &Team {
         &self.team
