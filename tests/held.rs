@@ -121,17 +121,17 @@ fn assert_alike(one: &Outcome, other: &Outcome, within: f64, what: &str) {
 fn both_strategies_hold_an_indenter_alike() {
     let gentle = ["contact.penalty=3e4", "friction.regularisation=1e-2"];
     let softer = ["contact.penalty=1e9", "friction.elastic_slip=1e-3"];
-    let large = ["layer.cells=[640,4]", "solver.tolerance=1e-10", "contact.penalty=3e4"];
+    // So large a face that no start is sought for.
+    let few = ["phase.lower.steps=4", "phase.slide.steps=6", "phase.back.steps=4"];
+    let large = [&["layer.cells=[640,4]", "solver.tolerance=1e-10", "contact.penalty=3e4"][..], &few].concat();
     // Deepest in the middle: not on a clamped end.
     let middle = "indenter.formula=1e-3+5e-4*(1+cos(2*pi*x))";
     let fixed = [ELASTIC_SLIP, BULK, "layer.sides=fixed", "material.memory=backward_euler", middle];
     let kinked = [ELASTIC_SLIP, "indenter.formula=1e-3+2e-3*abs(x-0.5)", "layer.sides=roller"];
-    let cases: [(&str, &str, &[&str], bool); 10] = [
+    let cases: [(&str, &str, &[&str], bool); 8] = [
         (LAYER, PHASES, &[], true),
-        (LAYER, PHASES, &gentle, false),
         (LAYER, PHASES, &kinked, false),
         (LAYER, PHASES, &[BULK, "contact.quadrature=gauss", "contact.penalty=3e4"], false),
-        (LAYER, MOUNTS, &[], false),
         (LAYER, MOUNTS, &gentle, true),
         (LAYER, MOUNTS, &fixed, false),
         (LAYER, MOUNTS, &large, false),
