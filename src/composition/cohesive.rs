@@ -26,7 +26,7 @@ pub fn cohesive_zone(scene: &Scene) -> Option<f64> {
     Some(PI * modulus(scene) * law.work() / (4.0 * law.strength().powi(2)))
 }
 
-/// Refuses cells of which fewer than [`FEWEST`] span the cohesive zone: the contact would be held by single nodes, one after the other.
+/// Refuses cells of which fewer than three span the cohesive zone: the contact would be held by single nodes, one after the other.
 ///
 /// # Errors
 /// [`Error::Scene`] with the cells that it needs.

@@ -63,7 +63,7 @@ impl<const D: usize> State<D> {
 
     /// Whether its gap is closed: where nothing pulls, whether p > 0.
     pub fn touches(&self) -> bool {
-        self.overlap >= 0.0 && self.pressure != 0.0
+        self.pressure > 0.0 || self.pressure < 0.0 && self.overlap >= 0.0
     }
 
     /// q - p n, Pa.

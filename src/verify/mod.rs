@@ -5,6 +5,7 @@
 //! that resolution: an error of discretisation that a coarser mesh predicts, the spacing of nodes at a contact's edge,
 //! the memory's error at that step, or the tolerance of the solver. It is not what happened to be found.
 
+mod adhesion;
 mod appendix_a;
 mod curve;
 mod half_space;
@@ -195,6 +196,7 @@ pub fn cases(quick: bool) -> Result<Vec<Case>> {
     list.extend(load::cases(quick));
     list.extend(mount::cases(quick));
     list.extend(wear::cases(quick));
+    list.extend(adhesion::cases());
     list.extend(heat::cases(quick)?);
     Ok(list)
 }
