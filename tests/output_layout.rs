@@ -110,7 +110,7 @@ fn layout_is_that_of_the_contract() {
         ("max_temperature mean_temperature", "K"),
         ("energy/heat energy/heat_stored energy/heat_convected energy/heat_conducted", "J/m"),
         ("energy/penalty energy/mount_spring energy/mount_dashpot energy/kinetic energy/imbalance", "J/m"),
-        ("energy/wear", "J/m"),
+        ("energy/wear energy/adhesion energy/jumps", "J/m"),
         ("worn_volume", "m^2"),
     ] {
         expected.extend(names.split(' ').map(|name| (format!("/history/{name}"), vec![10], float.clone(), units)));
