@@ -83,8 +83,10 @@ const SHELL: &CStr = c"shell";
 /// The fraction of its length with which a step is tried again when Newton's method fails.
 pub const CUT: f64 = 0.25;
 
-/// Iterations of a Krylov method before the step is given up.
+/// Iterations of a Krylov method before the step is given up; and where its preconditioner is the inverse but for round-off, of which more
+/// iterations only make less: of 500 random scenes 496 converge with 30 and take 2 s at most, 498 with 45, 499 with 200 and up to 20 s.
 const MOST_KRYLOV: ffi::PetscInt = 200;
+const MOST_BY_AN_INVERSE: ffi::PetscInt = 30;
 
 /// F(t, u, du/dt) = 0, as TS's implicit form wants it.
 ///
@@ -222,20 +224,28 @@ impl Integrator {
             check(ffi::SNESLineSearchSetType(search, line_search.as_ptr()))?;
             check(ffi::SNESGetKSP(snes, &mut ksp))?;
             check(ffi::KSPGetPC(ksp, &mut pc))?;
-            let (method, reduction) = match settings.linear {
-                // The preconditioner is nearly exact, so that this is one iteration, or two.
-                Linear::Preconditioned | Linear::OwnPreconditioned => (c"fgmres", 1e-10),
-                Linear::Own => (c"preonly", 1e-9),
-                Linear::OwnIterative(reduction) => (c"fgmres", reduction),
+            let (method, reduction, most) = match settings.linear {
+                // One iteration, or two.
+                Linear::Preconditioned | Linear::OwnPreconditioned => (c"fgmres", 1e-10, MOST_BY_AN_INVERSE),
+                Linear::Own => (c"preonly", 1e-9, MOST_KRYLOV),
+                Linear::OwnIterative(reduction) => (c"fgmres", reduction, MOST_KRYLOV),
             };
             check(ffi::KSPSetType(ksp, method.as_ptr()))?;
-            check(ffi::KSPSetTolerances(ksp, reduction, -2.0, -2.0, MOST_KRYLOV))?;
+            check(ffi::KSPSetTolerances(ksp, reduction, -2.0, -2.0, most))?;
             if let Linear::OwnIterative(most) = settings.linear {
                 check(ffi::SNESKSPSetUseEW(snes, truth(true)))?;
                 check(ffi::SNESKSPSetParametersEW(snes, 2, most, most, -2.0, -2.0, -2.0, -2.0))?;
             }
             check(ffi::PCSetType(pc, SHELL.as_ptr()))?;
             check(ffi::TSSetFromOptions(ts)).map_err(refused)?;
+            if !integrator.asks_for_solves()? {
+                let mut asked = 0;
+                check(ffi::KSPGetTolerances(ksp, null_mut(), null_mut(), null_mut(), &mut asked))?;
+                // Another preconditioner is farther from the inverse.
+                if asked == MOST_BY_AN_INVERSE {
+                    check(ffi::KSPSetTolerances(ksp, -2.0, -2.0, -2.0, MOST_KRYLOV))?;
+                }
+            }
             if !shell {
                 let mut package = null();
                 check(ffi::PCFactorGetMatSolverType(pc, &mut package))?;
