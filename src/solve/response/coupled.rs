@@ -15,7 +15,7 @@ use super::super::{BulkFields, Tempered, Work};
 use super::compliance::Compliance;
 use super::layered::Relaxations;
 use super::remembering::Inside;
-use super::sparse::unprepared;
+use super::sparse::{FaceRows, unprepared};
 use crate::element::solid::row_major;
 use crate::energy::BodyEnergy;
 use crate::error::Result;
@@ -28,8 +28,7 @@ use cells::CellArms;
 pub struct Coupled<const D: usize> {
     arms: CellArms<D>,
     body: Body<D>,
-    /// First row of each face node.
-    rows: Vec<usize>,
+    rows: FaceRows<D>,
     kept: Vec<i32>,
     held: Vec<i32>,
     tangent: Matrix,
@@ -54,9 +53,7 @@ struct Solver<const D: usize> {
 impl<const D: usize> Coupled<D> {
     /// At rest, made for this rank alone; `shifts` of each region, from the temperature that its times are those of.
     pub fn new(solid: &Solid<D>, body: Body<D>, relaxations: Relaxations, shifts: Vec<Option<Shift>>) -> Result<Self> {
-        let (mesh, numbering) = (body.mesh(), body.numbering());
-        let rows: Vec<usize> =
-            mesh.face.unknown.iter().map(|&unknown| D * numbering.global[unknown as usize] as usize).collect();
+        let rows = FaceRows::new(&body);
         let kept = Compliance::free_rows(&body).into_iter().map(|(_, row)| row).collect();
         let mut tangent = body.elastic()?;
         tangent.declare_positive_definite()?;
@@ -65,7 +62,7 @@ impl<const D: usize> Coupled<D> {
             u: body.vector()?,
             load: body.vector()?,
             free: body.vector()?,
-            face: vec![0.0; D * rows.len()],
+            face: vec![0.0; rows.components()],
             held: body.held(),
             solver: None,
             done: Work::default(),
@@ -105,11 +102,7 @@ impl<const D: usize> Inside<D> for Coupled<D> {
         drop(load);
         self.solver.as_ref().ok_or_else(unprepared)?.factor.solve(&self.load, &mut self.free)?;
         self.done.solves += 1;
-        let values = self.free.view()?;
-        for (node, &row) in self.face.chunks_exact_mut(D).zip(&self.rows) {
-            node.copy_from_slice(&values[row..][..D]);
-        }
-        Ok(())
+        self.rows.take(&self.free, &mut self.face)
     }
 
     fn face(&self) -> &[f64] {
@@ -133,11 +126,7 @@ impl<const D: usize> Inside<D> for Coupled<D> {
 
     /// u = A^-1 (b + P f), and the arms with it.
     fn commit(&mut self, step: Step, forces: &[f64]) -> Result<()> {
-        let mut load = self.load.view_mut()?;
-        for (force, &row) in forces.chunks_exact(D).zip(&self.rows) {
-            load[row..].iter_mut().zip(force).for_each(|(load, force)| *load += force);
-        }
-        drop(load);
+        self.rows.load(forces, &mut self.load)?;
         self.solver.as_ref().ok_or_else(unprepared)?.factor.solve(&self.load, &mut self.free)?;
         self.done.solves += 1;
         self.arms.commit(self.body.cells(), step.dt, [&self.u.view()?, &self.free.view()?]);

@@ -14,8 +14,7 @@ use crate::snapshot::Snapshot;
 pub struct Sparse<const D: usize> {
     bulk: Bulk,
     body: Body<D>,
-    /// First row of each face node.
-    rows: Vec<usize>,
+    rows: FaceRows<D>,
     kept: Vec<i32>,
     tangent: Matrix,
     /// The accepted displacements, m.
@@ -39,9 +38,7 @@ struct Solver<const D: usize> {
 impl<const D: usize> Sparse<D> {
     /// At rest; both made for this rank alone.
     pub fn new(bulk: Bulk, body: Body<D>) -> Result<Self> {
-        let (mesh, numbering) = (body.mesh(), body.numbering());
-        let rows: Vec<usize> =
-            mesh.face.unknown.iter().map(|&unknown| D * numbering.global[unknown as usize] as usize).collect();
+        let rows = FaceRows::new(&body);
         let kept = Compliance::free_rows(&body).into_iter().map(|(_, row)| row).collect();
         let mut tangent = bulk.new_tangent()?;
         tangent.declare_positive_definite()?;
@@ -53,7 +50,7 @@ impl<const D: usize> Sparse<D> {
             zero: vector()?,
             work: vector()?,
             done: Work::default(),
-            face: vec![0.0; D * rows.len()],
+            face: vec![0.0; rows.components()],
             solvers: Solvers::new(),
             bulk,
             rows,
@@ -80,11 +77,7 @@ impl<const D: usize> Inside<D> for Sparse<D> {
         self.load.scale(-1.0)?;
         self.solvers.current().ok_or_else(unprepared)?.factor.solve(&self.load, &mut self.free)?;
         self.done.solves += 1;
-        let values = self.free.view()?;
-        for (node, &row) in self.face.chunks_exact_mut(D).zip(&self.rows) {
-            node.copy_from_slice(&values[row..][..D]);
-        }
-        Ok(())
+        self.rows.take(&self.free, &mut self.face)
     }
 
     fn face(&self) -> &[f64] {
@@ -109,11 +102,7 @@ impl<const D: usize> Inside<D> for Sparse<D> {
 
     /// u = A^-1 (b + P f), and the arms with it.
     fn commit(&mut self, step: Step, forces: &[f64]) -> Result<()> {
-        let mut load = self.load.view_mut()?;
-        for (force, &row) in forces.chunks_exact(D).zip(&self.rows) {
-            load[row..].iter_mut().zip(force).for_each(|(load, force)| *load += force);
-        }
-        drop(load);
+        self.rows.load(forces, &mut self.load)?;
         self.solvers.current().ok_or_else(unprepared)?.factor.solve(&self.load, &mut self.u)?;
         self.done.solves += 1;
         self.bulk.commit(step, &self.u)
@@ -133,6 +122,40 @@ impl<const D: usize> Inside<D> for Sparse<D> {
 
     fn fields(&mut self) -> Result<BulkFields> {
         self.body.fields_with_memory(&mut self.bulk, &self.u)
+    }
+}
+
+/// Where the nodes of the face are among the unknowns of a body that one rank has whole.
+pub struct FaceRows<const D: usize>(Vec<usize>);
+
+impl<const D: usize> FaceRows<D> {
+    /// The first row of each.
+    pub fn new(body: &Body<D>) -> Self {
+        let (mesh, numbering) = (body.mesh(), body.numbering());
+        Self(mesh.face.unknown.iter().map(|&unknown| D * numbering.global[unknown as usize] as usize).collect())
+    }
+
+    /// How many components the face has.
+    pub fn components(&self) -> usize {
+        D * self.0.len()
+    }
+
+    /// face = what is the face's of a vector of the body.
+    pub fn take(&self, whole: &Vector, face: &mut [f64]) -> Result<()> {
+        let values = whole.view()?;
+        for (node, &row) in face.chunks_exact_mut(D).zip(&self.0) {
+            node.copy_from_slice(&values[row..][..D]);
+        }
+        Ok(())
+    }
+
+    /// load += P f, for forces on the nodes of the face.
+    pub fn load(&self, forces: &[f64], load: &mut Vector) -> Result<()> {
+        let mut load = load.view_mut()?;
+        for (force, &row) in forces.chunks_exact(D).zip(&self.0) {
+            load[row..].iter_mut().zip(force).for_each(|(load, force)| *load += force);
+        }
+        Ok(())
     }
 }
 
