@@ -9,14 +9,16 @@
 
 mod displaced;
 mod exchange;
+mod fields;
 mod oscillation;
 mod points;
 mod state;
+mod totals;
 mod worn;
 
 use std::rc::Rc;
 
-use nalgebra::{SVector, Vector2};
+use nalgebra::Vector2;
 
 use crate::adhesion;
 use crate::element::mpjr::Quadrature;
@@ -31,8 +33,10 @@ use crate::wear::{Wear, Worn};
 
 pub use displaced::{Residual, Tangent, Trial};
 pub use exchange::{Exchange, Rub};
+pub use fields::Fields;
 pub use points::{Point, Points};
 pub use state::State;
+pub use totals::Totals;
 pub use worn::WornFields;
 
 /// How many lines beyond its own a rank looks at for the oscillation of tractions.
@@ -70,46 +74,6 @@ pub struct Interface<const D: usize> {
     tangential_laws: usize,
     /// Of each point, K; none where nobody tells.
     temperatures: Vec<f64>,
-}
-
-/// Integrals over the contact face.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Totals {
-    /// integral of (p n_z - q_z), N/m (N in space): the vertical force, compression positive; on a flat face, of p.
-    pub normal_force: f64,
-    /// integral of q along x and y, N/m or N, on the layer, positive along +x and +y. The horizontal part of the pressure on a
-    /// curved face (-p n_x), like that on the profile's slope, is not in it.
-    pub tangential_force: Vector2<f64>,
-    /// integral of p dh/dx and p dh/dy, N/m or N.
-    pub hysteretic_force: Vector2<f64>,
-    /// Share of the face whose gap is closed.
-    pub contact_fraction: f64,
-    /// Share of the contact that sticks; 0 without contact or friction.
-    pub stick_fraction: f64,
-    /// m
-    pub max_penetration: f64,
-    /// The largest slip of a sticking point while it was to stick, m: the error of the regularisation.
-    pub stuck_slip: f64,
-    /// How much the tractions oscillate from node to node; 1 = nothing but a checkerboard.
-    pub traction_oscillation: f64,
-    /// integral of the worn depth, m^2 (m^3 in space).
-    pub worn_volume: f64,
-}
-
-/// Fields at the face's nodes. Under Gauss quadrature, the mean of the points that share a node, by their shares; the gap is
-/// that of the deepest of them.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Fields {
-    /// p, Pa, positive in compression.
-    pub pressure: Vec<f64>,
-    /// q, Pa, on the layer, along the face in the senses of +x and +y.
-    pub shear: Vec<Vector2<f64>>,
-    /// Corrected normal gap g*, m; negative = penetration.
-    pub gap: Vec<f64>,
-    /// w, m/s
-    pub slip_rate: Vec<Vector2<f64>>,
-    /// Only where something wears.
-    pub worn: Option<WornFields>,
 }
 
 /// What is asked of a contact face at its accepted state, whatever the dimension. Lists are of this rank's nodes.
@@ -329,138 +293,6 @@ impl<const D: usize> Interface<D> {
         touched.find_map(fault).map_or(Ok(()), |fault| Err(Error::Solver(fault)))
     }
 
-    /// The integrals over the face at the accepted state. Collective.
-    ///
-    /// # Errors
-    /// As for [`Self::place`].
-    pub fn totals(&mut self) -> Result<Totals> {
-        self.place(self.place)?;
-        let Fields { pressure, shear, .. } = self.fields(1.0);
-        let traction =
-            |(q, p): (Vector2<f64>, f64)| SVector::<f64, D>::from_fn(|i, _| if i + 1 < D { q[i] } else { p });
-        let tractions: Vec<_> = shear.into_iter().zip(pressure).map(traction).collect();
-        let around = self.around(&tractions);
-        let beside = |other: usize| match other.checked_sub(self.accepted.len()) {
-            None => self.accepted[other].pressure > 0.0,
-            Some(other) => around[other][D - 1] > 0.0,
-        };
-        let mut totals = Totals::default();
-        let (mut length, mut contact, mut stick) = (0.0, 0.0, 0.0);
-        for (i, (point, state)) in self.points.all().iter().zip(&self.accepted).enumerate() {
-            length += point.weight;
-            totals.max_penetration = totals.max_penetration.max(state.overlap);
-            if state.pressure == 0.0 {
-                continue;
-            }
-            contact += if state.touches() { point.weight } else { 0.0 };
-            totals.normal_force -= point.weight * state.on_layer(&point.normal)[D - 1];
-            totals.tangential_force += along_the_plane(&state.shear) * point.weight;
-            totals.hysteretic_force +=
-                self.gradient(i, &beside) * (point.weight * point.normal[D - 1] * state.pressure);
-            if state.sticks && state.touches() {
-                stick += point.weight;
-                totals.stuck_slip = totals.stuck_slip.max(state.stuck.norm());
-            }
-        }
-        let (team, q, hysteretic) = (self.team(), totals.tangential_force, totals.hysteretic_force);
-        let mine = [totals.normal_force, q.x, q.y, hysteretic.x, hysteretic.y, length, contact, stick];
-        let [normal_force, q_x, q_y, hysteretic_x, hysteretic_y, length, contact, stick] = team.sum(mine);
-        let [max_penetration, stuck_slip] = team.most([totals.max_penetration, totals.stuck_slip]);
-        Ok(Totals {
-            normal_force,
-            tangential_force: Vector2::new(q_x, q_y),
-            hysteretic_force: Vector2::new(hysteretic_x, hysteretic_y),
-            contact_fraction: contact / length,
-            stick_fraction: if contact > 0.0 { stick / contact } else { 0.0 },
-            max_penetration,
-            stuck_slip,
-            worn_volume: self.worn_volume(),
-            traction_oscillation: self.oscillation(tractions, &around),
-        })
-    }
-
-    /// The tractions of the line before this rank's, and of those after it; nothing where the face is not parted. Collective.
-    fn around(&self, tractions: &[SVector<f64, D>]) -> Vec<SVector<f64, D>> {
-        let team = self.team();
-        if !team.is_parted() {
-            return Vec::new();
-        }
-        let lines = team.lines_of(team.ranks()[0] - 1).end;
-        let wanted = |rank: usize| {
-            let std::ops::Range { start, end } = team.lines_of(rank);
-            std::iter::once(start + lines - 1).chain(end..end + BEYOND).map(|line| line % lines).collect()
-        };
-        let flat: Vec<f64> = tractions.iter().flatten().copied().collect();
-        team.fetched(&flat, wanted).chunks_exact(D).map(SVector::from_column_slice).collect()
-    }
-
-    /// See [`Totals::traction_oscillation`]. Collective.
-    fn oscillation(&self, mut tractions: Vec<SVector<f64, D>>, around: &[SVector<f64, D>]) -> f64 {
-        let count = tractions.len();
-        let Some(beyond) = &self.beyond else {
-            return oscillation::oscillation((&self.face, count), &tractions, self.team());
-        };
-        // But for the line before.
-        tractions.extend_from_slice(&around[around.len() / (1 + BEYOND)..]);
-        oscillation::oscillation((beyond, count), &tractions, self.team())
-    }
-
-    /// The gradient of h over a point of the contact: at a kink of the profile that of the side which is in contact, of both their
-    /// mean. `touches` says whether another point is in contact.
-    fn gradient(&self, i: usize, touches: &dyn Fn(usize) -> bool) -> Vector2<f64> {
-        /// How far beside the point the sides are looked at, over the size of what it stands for.
-        const BESIDE: f64 = 1e-6;
-        /// Slopes that differ by less, over the larger, are one.
-        const ALIKE: f64 = 1e-3;
-        let point = &self.points.all()[i];
-        let (place, size) = (point.along() - self.place.sliding, point.weight.powf(1.0 / (D - 1) as f64));
-        let here = self.points.heights()[i].gradient;
-        let touches = |other: Option<usize>| other.is_some_and(touches);
-        let along = |axis: usize| {
-            let side = |steps: f64| {
-                let beside = place + Vector2::ith(axis, steps * BESIDE * size);
-                self.laws.surface(self.worn.as_ref()).at(beside).map_or(here[axis], |height| height.gradient[axis])
-            };
-            let (left, right) = (side(-1.0), side(1.0));
-            let jump = (right - left).abs();
-            // A slope that only passes through zero jumps twice as far over twice the distance.
-            if jump <= ALIKE * left.abs().max(right.abs()) || (side(2.0) - side(-2.0)).abs() > 1.5 * jump {
-                return here[axis];
-            }
-            match self.points.beside(i, axis).map(touches) {
-                [true, false] => left,
-                [false, true] => right,
-                _ => 0.5 * (left + right),
-            }
-        };
-        Vector2::from_fn(|axis, _| if axis + 1 < D { along(axis) } else { 0.0 })
-    }
-
-    /// The fields at the accepted state after a step of length `dt`, s.
-    pub fn fields(&self, dt: f64) -> Fields {
-        let nodes = self.face.count();
-        let (none, open) = (vec![Vector2::zeros(); nodes], vec![f64::INFINITY; nodes]);
-        let mut fields = Fields {
-            pressure: vec![0.0; nodes],
-            shear: none.clone(),
-            gap: open,
-            slip_rate: none,
-            worn: self.worn_fields(),
-        };
-        let weights: Vec<f64> = self.points.all().iter().map(|point| point.weight).collect();
-        let length = self.at_nodes(&weights);
-        for (i, (point, state)) in self.points.all().iter().zip(&self.accepted).enumerate() {
-            for &(node, share) in self.points.shares(i) {
-                let part = share * point.weight / length[node];
-                fields.pressure[node] += part * state.pressure;
-                fields.shear[node] += laid_flat(&state.shear, &point.normal) * part;
-                fields.slip_rate[node] += laid_flat(&state.slip, &point.normal) * (part / dt);
-                fields.gap[node] = fields.gap[node].min(-state.overlap);
-            }
-        }
-        fields
-    }
-
     /// Adds the accepted state to a snapshot. Collective.
     pub fn save(&self, snapshot: &mut Snapshot) {
         let mut list = Vec::with_capacity(State::<D>::NUMBERS * self.accepted.len());
@@ -483,17 +315,6 @@ impl<const D: usize> Interface<D> {
         self.place = Placement { approach, sliding, sliding_rate, approach_rate, far, ..Placement::default() };
         self.restore_worn(snapshot)
     }
-}
-
-/// x and y of a vector.
-fn along_the_plane<const D: usize>(vector: &SVector<f64, D>) -> Vector2<f64> {
-    Vector2::from_fn(|axis, _| if axis + 1 < D { vector[axis] } else { 0.0 })
-}
-
-/// x and y of a tangential vector once its face is turned from its normal to lie flat, by the least rotation.
-fn laid_flat<const D: usize>(vector: &SVector<f64, D>, normal: &SVector<f64, D>) -> Vector2<f64> {
-    let rise = vector[D - 1] / (1.0 + normal[D - 1]);
-    along_the_plane(&(vector - normal * rise))
 }
 
 #[cfg(test)]

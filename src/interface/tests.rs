@@ -1,6 +1,8 @@
 //! The tangent against differences, and the totals against integrals.
 #![allow(clippy::unwrap_used)]
 
+use nalgebra::SVector;
+
 use super::*;
 use crate::friction::{CoulombTanh, ElasticSlip, Strength};
 use crate::mesh::{Facet, Layer, Sides, Span};

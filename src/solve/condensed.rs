@@ -8,6 +8,8 @@
 mod checkpoint;
 mod jump;
 mod linear;
+mod stage;
+mod unknowns;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
@@ -15,11 +17,10 @@ use nalgebra::SVector;
 
 use super::accepted::AcceptedFace;
 use super::response::{Response, unprepared};
-use super::traction::{self, Answer, Behind, Held, Laws, Outcome, Site, Sites};
+use super::traction::{self, Answer, Behind, Outcome, Sites};
 use super::{BulkFields, Contact, Tempered, TransientProblem, Work};
 use crate::energy::Energy;
 use crate::error::Result;
-use crate::friction::Law;
 use crate::interface::{Interface, State};
 use crate::loading::{DIRECTIONS, Mount, Phase, Placement, Support};
 use crate::parallel::{Team, share_numbers};
@@ -27,6 +28,9 @@ use crate::petsc::{Gather, Matrix, Step, Vector, Verdict};
 use crate::snapshot::Snapshot;
 use jump::Jump;
 use linear::Linear;
+use stage::Stage;
+pub use unknowns::Freedom;
+use unknowns::{tractions, write};
 
 /// Faces with more components than this are solved by GMRES: of a periodic layer with a preconditioner by Fourier
 /// transforms, else with an older factor, so that a step costs the square of the components in contact and not the cube.
@@ -78,45 +82,8 @@ pub enum Way {
     Pressures,
 }
 
-/// What of the indenter's place may be unknown. These are the last unknowns, on rank 0.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Freedom {
-    /// Each direction.
-    pub directions: [bool; DIRECTIONS],
-    /// From the lowest point of the body to the highest of its face, m.
-    pub height: f64,
-}
-
-impl Freedom {
-    /// How many unknowns that makes.
-    pub fn unknowns(&self) -> usize {
-        self.directions.iter().filter(|free| **free).count()
-    }
-}
-
 /// What [`Condensed::along`] gives.
 type Gone<const D: usize> = (Vec<SVector<f64, D>>, Vec<SVector<f64, D>>, SVector<f64, D>);
-
-/// The points of the contact in one step.
-struct Stage<const D: usize> {
-    step: Step,
-    placement: Placement,
-    /// Whether nothing has to move: under an indenter that does not, the accepted tractions leave all where it was, to the last digit,
-    /// and friction does not creep.
-    still: bool,
-    /// On the ranks that have points.
-    sites: Sites<D>,
-    /// The last state that was tried.
-    trial: Outcome<D>,
-    /// The norm of G at the first.
-    first: Option<f64>,
-    /// Newton steps so far.
-    newton: usize,
-    /// The jump that is followed, where something adheres.
-    jump: Option<Jump<D>>,
-    /// What a point is to slip, m, if it goes on as it did and follows what moves the indenter.
-    usual: f64,
-}
 
 impl<const D: usize, R: Response<D>> Condensed<D, R> {
     /// At rest. `layout` has the components of each face node, on rank 0 or on the rank that has it; `tolerance` is relative to the tractions.
@@ -152,47 +119,6 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         })
     }
 
-    /// Makes the stage that of `step`.
-    fn enter(&mut self, step: Step) -> Result<()> {
-        if self.stage.as_ref().is_some_and(|stage| stage.step == step) {
-            return Ok(());
-        }
-        self.response.prepare(step)?;
-        let placement = self.face.placement(step)?;
-        self.face.interface.place(placement)?;
-        self.response.free(step, &mut self.free)?;
-        let (trial, usual) = (Outcome::none(), self.usual_slip(&placement));
-        let sites = match self.behind() {
-            Some(behind) => behind.sites(&self.face, placement, &self.free.view()?),
-            None => Sites::none(),
-        };
-        let still = placement.is_still()
-            && self.face.interface.friction().is_none_or(Law::rests)
-            && self.team().all_say(self.displaced(&self.accepted)?.0 == self.face.displacement());
-        self.stage = Some(Stage { step, placement, still, sites, trial, first: None, newton: 0, jump: None, usual });
-        Ok(())
-    }
-
-    /// See [`Stage::usual`].
-    fn usual_slip(&self, to: &Placement) -> f64 {
-        let moved: f64 =
-            self.face.interface.placement().ways(to).iter().map(|way| (way.far[1] - way.far[0]).abs()).sum();
-        let (mut slipped, mut pressed) = (0.0, 0.0);
-        for (point, state) in self.face.interface.points().all().iter().zip(self.face.interface.states()) {
-            slipped += point.weight * state.pressure * state.slip.norm();
-            pressed += point.weight * state.pressure;
-        }
-        let [slipped, pressed] = self.team().sum([slipped, pressed]);
-        let mean = if pressed > 0.0 { slipped / pressed } else { 0.0 };
-        moved + mean * to.dt / self.face.last_step()
-    }
-
-    /// Whether the state that was tried last, which meets the laws, is one that nothing but the step decides.
-    fn jumped(&self, stage: &Stage<D>) -> bool {
-        let before: Vec<f64> = self.face.interface.states().iter().map(|state| state.shear.norm()).collect();
-        self.with_laws(stage, |laws| traction::jumped(&stage.sites, &stage.trial, laws, (stage.usual, &before)))
-    }
-
     /// The ranks that share the face.
     fn team(&self) -> &Team {
         self.face.interface.team()
@@ -202,31 +128,6 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
     fn behind(&self) -> Option<Behind<'_, D>> {
         let (interface, secant) = (&self.face.interface, self.response.secant());
         self.response.compliance().map(|compliance| Behind { interface, compliance, secant })
-    }
-
-    /// kappa times how far the indenter has gone in each direction: the last entries of a vector of the unknowns, on the first rank.
-    /// Collective.
-    fn last(&self, u: &Vector) -> Result<[f64; DIRECTIONS]> {
-        if self.freedom.unknowns() == 0 {
-            return Ok([0.0; DIRECTIONS]);
-        }
-        let values = u.view()?;
-        let mut entries = values.iter().rev().take(self.freedom.unknowns()).rev();
-        let last = self.freedom.directions.map(|free| if free { entries.next().copied().unwrap_or(0.0) } else { 0.0 });
-        Ok(self.team().of_first(last))
-    }
-
-    /// Writes them.
-    fn write_last(&self, last: [f64; DIRECTIONS], u: &mut Vector) -> Result<()> {
-        let mut values = u.view_mut()?;
-        let unknowns = if self.team().is_first() { self.freedom.unknowns() } else { 0 };
-        let mut entries = values.iter_mut().rev().take(unknowns).rev();
-        for (free, last) in self.freedom.directions.into_iter().zip(last) {
-            if let Some(entry) = free.then(|| entries.next()).flatten() {
-                *entry = last;
-            }
-        }
-        Ok(())
     }
 
     /// Within a phase the tractions go on as they did, or along with the indenter where that goes far in a step. A change that the
@@ -258,38 +159,12 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         write(u, pressed)
     }
 
-    /// How far the indenter has gone from its placement, m, by a vector of the unknowns.
-    fn shift(&self, sites: &Sites<D>, u: &Vector) -> Result<SVector<f64, D>> {
-        Ok(traction::shift::<D>(self.last(u)?) / sites.modulus())
-    }
-
     /// What a Newton step takes off: tractions, motions, and how far the indenter goes.
     fn along(&self, behind: &Behind<'_, D>, sites: &Sites<D>, decrement: &Vector) -> Result<Gone<D>> {
         let (gone, decrement) = (self.shift(sites, decrement)?, tractions::<D>(decrement)?);
         let moves = behind.moves(&decrement)?;
         let moved = moves.iter().zip(sites).map(|(moved, site)| moved + traction::against(site, &gone)).collect();
         Ok((decrement, moved, gone))
-    }
-
-    /// The last entries of the vector of a state.
-    fn entries(sites: &Sites<D>, shift: &SVector<f64, D>) -> [f64; DIRECTIONS] {
-        let modulus = sites.modulus();
-        std::array::from_fn(|direction| shift.dot(&traction::axis(direction)) * modulus)
-    }
-
-    /// Calls with the laws of a step.
-    fn with_laws<T>(&self, stage: &Stage<D>, call: impl FnOnce(Laws<'_>) -> T) -> T {
-        let interface = &self.face.interface;
-        let profile = interface.profile_beyond(stage.placement.sliding);
-        call(Laws {
-            penalty: interface.penalty(),
-            friction: interface.friction(),
-            wear: interface.wear(),
-            adhesion: interface.adhesion(),
-            dt: stage.step.dt,
-            resolution: 0.0,
-            held: Held { supports: stage.placement.supports, profile: Some(&profile) },
-        })
     }
 
     /// The displacements of the nodes under tractions, m, and the forces, N/m; on the ranks that have points.
@@ -339,29 +214,6 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         self.comm.process_at_rank(0).broadcast_into(&mut list[..]);
         self.comm.process_at_rank(0).broadcast_into(&mut displacement[..]);
         (list.chunks_exact(State::<D>::NUMBERS).map(State::read).collect(), displacement)
-    }
-
-    /// The tractions at the end of a step, and the points.
-    ///
-    /// Where nothing moved there was nothing for the laws to do, and what is in contact rests, to the last digit: the laws would take
-    /// every digit that round-off puts beyond f p and give none back.
-    fn ends(&self, stage: &Stage<D>, outcome: &Outcome<D>) -> (Vec<SVector<f64, D>>, Vec<State<D>>) {
-        let rests = self.rests(stage, outcome);
-        let met = if rests { outcome.tractions.clone() } else { outcome.met(&stage.sites) };
-        let ends = stage.sites.iter().zip(&outcome.answers).zip(&outcome.motions).zip(self.face.interface.states());
-        let states = self.with_laws(stage, |laws| {
-            let state = |(((site, answer), motion), before): (((&Site<D>, &Answer<D>), _), &State<D>)| match rests {
-                true if answer.active => before.at_rest(),
-                _ => answer.state(site, motion, laws, before),
-            };
-            ends.map(state).collect()
-        });
-        (met, states)
-    }
-
-    /// Whether nothing moves in the step. Collective.
-    fn rests(&self, stage: &Stage<D>, outcome: &Outcome<D>) -> bool {
-        stage.still && self.team().all_say(outcome.tractions == self.accepted)
     }
 
     /// Tractions near those that meet the laws, from others.
@@ -594,17 +446,4 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
             ..work
         }
     }
-}
-
-/// The tractions in a vector of the unknowns, on this rank.
-fn tractions<const D: usize>(u: &Vector) -> Result<Vec<SVector<f64, D>>> {
-    Ok(u.view()?.chunks_exact(D).map(SVector::from_column_slice).collect())
-}
-
-/// Writes them.
-fn write<const D: usize>(u: &mut Vector, tractions: impl Iterator<Item = SVector<f64, D>>) -> Result<()> {
-    for (place, value) in u.view_mut()?.chunks_exact_mut(D).zip(tractions) {
-        place.copy_from_slice(value.as_slice());
-    }
-    Ok(())
 }

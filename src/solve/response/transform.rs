@@ -7,6 +7,8 @@
 //! Of a face that is parted among ranks each has some of the lines of nodes, and some of the columns of waves with all their lines: between
 //! both stands one exchange of all components there, and one back. What acts on waves never leaves the rank that has them.
 
+mod lines;
+
 use std::cell::{Cell, RefCell};
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -305,114 +307,6 @@ impl<const D: usize> Transform<D> {
         self.counted.set(self.counted.get() + components.iter().filter(|component| **component).count());
     }
 
-    /// Where in `others` the columns of each rank stand, and in `spectra` the lines of each.
-    fn parts(&self, passing: &Passing) -> [Vec<Range<usize>>; 2] {
-        let [ranks, rank] = self.team.ranks();
-        let (count, own) = (passing.count(), self.own().len());
-        let mut first = 0;
-        let columns = (0..ranks).map(|other| {
-            let width = if other == rank { 0 } else { self.starts[other + 1] - self.starts[other] };
-            let begins = first;
-            first += width * count * self.here.len();
-            begins..first
-        });
-        let columns = columns.collect();
-        let lines = |other: usize| {
-            let lines = self.team.lines_of(other);
-            lines.start * count * own..lines.end * count * own
-        };
-        [columns, (0..ranks).map(lines).collect()]
-    }
-
-    /// The pieces of a line of waves, rank by rank: which columns, and where they stand in `others`; none of this rank, whose stand in
-    /// `spectra`.
-    fn pieces<'a>(
-        &'a self,
-        (line, component): (usize, usize),
-        passing: &'a Passing,
-        columns: &'a [Range<usize>],
-    ) -> impl Iterator<Item = (Range<usize>, Option<usize>)> + 'a {
-        let [_, rank] = self.team.ranks();
-        columns.iter().enumerate().map(move |(other, place)| {
-            let range = self.starts[other]..self.starts[other + 1];
-            let at = (line * passing.count() + passing.place(component)) * range.len();
-            (range, (other != rank).then_some(place.start + at))
-        })
-    }
-
-    /// Along each line, of the last `S` components to a node.
-    fn lines_there<const S: usize>(
-        &self,
-        values: &[f64],
-        (from, passing): (&[bool; D], &Passing),
-        room: &mut Room<D>,
-    ) -> Result<()> {
-        self.count(from);
-        let (width, parted) = (self.own().len(), self.team.is_parted());
-        let Room { spectra, others, row, spectrum, scratch, .. } = room;
-        let scratch = &mut scratch[..self.forward.get_scratch_len()];
-        let [columns, lines] = if parted { self.parts(passing) } else { Default::default() };
-        for (line, nodes) in values.chunks_exact(S * self.columns).enumerate() {
-            for component in (0..D).filter(|&component| from[component]) {
-                let place = component + S - D;
-                row.iter_mut().zip(nodes.chunks_exact(S)).for_each(|(row, node)| *row = node[place]);
-                let own = ((self.here.start + line) * passing.count() + passing.place(component)) * width;
-                let own = &mut spectra[own..][..width];
-                if !parted {
-                    self.forward.process_with_scratch(row, own, scratch).map_err(transform_failed)?;
-                    continue;
-                }
-                self.forward.process_with_scratch(row, spectrum, scratch).map_err(transform_failed)?;
-                for (range, at) in self.pieces((line, component), passing, &columns) {
-                    let to = at.map_or(&mut own[..], |at| &mut others[at..][..range.len()]);
-                    to.copy_from_slice(&spectrum[range]);
-                }
-            }
-        }
-        self.team.exchange((others, &columns), (spectra, &lines));
-        Ok(())
-    }
-
-    /// Back along each line.
-    fn lines_back<const S: usize>(
-        &self,
-        values: &mut [f64],
-        (to, passing): (&[bool; D], &Passing),
-        room: &mut Room<D>,
-    ) -> Result<()> {
-        self.count(to);
-        let (half, share) = (self.half(), 1.0 / self.nodes() as f64);
-        let (width, parted) = (self.own().len(), self.team.is_parted());
-        let Room { spectra, others, row, spectrum, scratch, .. } = room;
-        let scratch = &mut scratch[..self.inverse.get_scratch_len()];
-        let [columns, lines] = if parted { self.parts(passing) } else { Default::default() };
-        self.team.exchange((spectra, &lines), (others, &columns));
-        for (line, nodes) in values.chunks_exact_mut(S * self.columns).enumerate() {
-            for component in (0..D).filter(|&component| to[component]) {
-                let own = ((self.here.start + line) * passing.count() + passing.place(component)) * width;
-                let own = &mut spectra[own..][..width];
-                let whole = if parted {
-                    for (range, at) in self.pieces((line, component), passing, &columns) {
-                        let from = at.map_or(&own[..], |at| &others[at..][..range.len()]);
-                        spectrum[range].copy_from_slice(from);
-                    }
-                    &mut spectrum[..]
-                } else {
-                    own
-                };
-                // Real but for round-off.
-                whole[0].im = 0.0;
-                if self.columns.is_multiple_of(2) {
-                    whole[half - 1].im = 0.0;
-                }
-                self.inverse.process_with_scratch(whole, row, scratch).map_err(transform_failed)?;
-                let place = component + S - D;
-                nodes.chunks_exact_mut(S).zip(row.iter()).for_each(|(node, row)| node[place] = row * share);
-            }
-        }
-        Ok(())
-    }
-
     /// Across the lines, there with the components `from` and back with those of `to`, and between that what acts on each wave; of
     /// components that do not come from anywhere it is given nothing.
     fn across_lines(
@@ -480,36 +374,4 @@ fn transform_failed(error: realfft::FftError) -> Error {
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
-mod tests {
-    use super::*;
-
-    /// Waves that nothing acts on are the values, of all components, of some and of the last alone, for even and odd counts beside and
-    /// beyond a tile; each component counts once there and once back, and one that is nothing only back.
-    #[test]
-    fn what_nothing_acts_on_stays() {
-        for counts in [[7, 10], [10, 7], [16, 18], [3, 33], [2, 2]] {
-            let transform = Transform::<3>::new(&counts);
-            let values: Vec<f64> = (0..3 * transform.nodes()).map(|i| ((7 * i + 3) % 11) as f64 - 4.0).collect();
-            let close = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-14);
-            let mut all = values.clone();
-            transform.filter(&mut all, (0..3, 0..3), |_, _| {}).unwrap();
-            assert!(close(&all, &values) && transform.counted() == 6);
-            let mut some = values.clone();
-            transform.filter(&mut some, (0..3, 1..2), |_, w| w[1] *= 2.0).unwrap();
-            let doubled = |(i, value): (usize, &f64)| if i % 3 == 1 { 2.0 * value } else { *value };
-            assert!(close(&some, &values.iter().enumerate().map(doubled).collect::<Vec<_>>()));
-            let mut last: Vec<f64> = values.iter().skip(2).step_by(3).copied().collect();
-            transform.filter_last(&mut last, |_| 1.0).unwrap();
-            assert!(close(&last, &values.iter().skip(2).step_by(3).copied().collect::<Vec<_>>()));
-            let waves = transform.forward(&values).unwrap();
-            assert!(close(&transform.inverse(|k| &waves[k]).unwrap(), &values));
-            let before = transform.counted();
-            let mut normal: Vec<f64> =
-                values.iter().enumerate().map(|(i, v)| if i % 3 == 2 { *v } else { 0.0 }).collect();
-            transform.filter(&mut normal, (0..3, 0..3), |_, _| {}).unwrap();
-            assert_eq!(transform.counted() - before, 4);
-            transform.filter(&mut vec![0.0; 3 * transform.nodes()], (0..3, 0..3), |_, w| w[0].re = 1.0).unwrap();
-            assert_eq!(transform.counted() - before, 4);
-        }
-    }
-}
+mod tests;
