@@ -4,37 +4,15 @@
 
 mod common;
 
+use common::compare::difference;
 use common::program::{Outcome, Run};
+use common::scene::{DRAG, TWO_ARMS, Text, coulomb, paraboloid};
 use common::solid::{Body, Surface};
 
 /// A body of 1 x 1 x 0.5 m under a paraboloid that is pressed in and dragged obliquely; `body` and `element` come before it.
-const SCENE: &str = r#"
-[material]
-shear_modulus = 568.498
-poisson_ratio = 0.3
-arms = [ { weight = 0.3, time = 0.2 }, { weight = 0.4, time = 2.0 } ]
-poisson_rule = "constant_ratio"
-[indenter]
-profile = "paraboloid"
-radius = 2.0
-centre = [0.5, 0.45]
-[contact]
-[friction]
-law = "coulomb"
-coefficient = 0.3
-[[phase]]
-name = "press"
-duration = 1.0
-steps = 4
-approach = 0.03
-[[phase]]
-name = "drag"
-velocity = [0.1, 0.05]
-distance = 0.2
-steps = 5
-[solver]
-tolerance = 1e-12
-"#;
+static SCENE: Text = Text::new(|| {
+    [TWO_ARMS, &paraboloid("[0.5, 0.45]"), &coulomb("0.3"), DRAG, "[solver]\ntolerance = 1e-12\n"].concat()
+});
 
 const SIZES: [f64; 3] = [1.0, 1.0, 0.5];
 const MESH: &str = "[mesh]\nfile = \"body.msh\"\ncontact = \"top\"\nfixed = [\"base\"]\n";
@@ -63,13 +41,6 @@ fn on(body: &Body, surfaces: &[Surface<'_>], scene: &str, changes: &[&str]) -> R
     let run = changes.iter().fold(Run::new(&format!("{MESH}{scene}")), |run, change| run.set(*change));
     body.write(surfaces, &run.directory().join("body.msh"));
     run
-}
-
-/// The largest difference over the largest value.
-fn difference(a: &[f64], b: &[f64]) -> f64 {
-    assert_eq!(a.len(), b.len());
-    let largest = a.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    a.iter().zip(b).fold(0.0_f64, |most, (x, y)| most.max((x - y).abs())) / largest
 }
 
 /// The histories along x and along y of two runs, apart by at most so much.
@@ -104,9 +75,9 @@ fn a_layer_from_a_file_is_the_layer() {
     ];
     let body = Body::layer(SIZES, [6, 5, 4]);
     for (of_layer, of_mesh) in cases {
-        let scene = format!("{LAYER}{SCENE}");
+        let scene = format!("{LAYER}{}", *SCENE);
         let layer = of_layer.iter().fold(Run::new(&scene), |run, change| run.set(*change)).done();
-        let mesh = on(&body, &SURFACES, SCENE, of_mesh).done();
+        let mesh = on(&body, &SURFACES, &SCENE, of_mesh).done();
         assert_same(&layer, &mesh, 1e-9, &format!("{of_mesh:?}"));
     }
 }
@@ -130,7 +101,7 @@ fn uniform_compression_of_distorted_cells() {
     let flat = ["indenter.radius=1e20", "material.arms=[]", "friction.coefficient=0.0", "phase.press.approach=1e-3"];
     let rollers = ["mesh.roller=[\"across x\",\"across y\"]", "output.bulk_at=[\"press\"]", "phase.drag.steps=1"];
     for (corners, body) in [(8, hexahedra.clone()), (4, hexahedra.tetrahedra())] {
-        let outcome = on(&body, &SURFACES, SCENE, &[&flat[..], &rollers].concat()).done();
+        let outcome = on(&body, &SURFACES, &SCENE, &[&flat[..], &rollers].concat()).done();
         let strain = 1e-3 / SIZES[2];
         let (axial, lateral) = (-(BULK + 4.0 / 3.0 * SHEAR) * strain, -(BULK - 2.0 / 3.0 * SHEAR) * strain);
         assert!((outcome.at(1.0, "normal_force") / -axial - 1.0).abs() < 1e-10);
@@ -171,7 +142,7 @@ fn tetrahedra_converge_to_hexahedra() {
     let apart = [8, 16].map(|n| {
         let body = Body::layer(SIZES, [n, n, n / 2]);
         let [a, b] = [body.clone(), body.tetrahedra()].map(|body| {
-            let pressure = on(&body, &SURFACES, SCENE, &wave).done().results().interface("pressure").unwrap();
+            let pressure = on(&body, &SURFACES, &SCENE, &wave).done().results().interface("pressure").unwrap();
             let row = pressure.row(0).to_vec();
             assert!(row.iter().all(|pressure| *pressure > 0.0));
             let mean = row.iter().sum::<f64>() / row.len() as f64;
@@ -202,10 +173,10 @@ fn condensed_is_the_same_discrete_solution() {
     for (body, rule) in [(hexahedra.clone(), "constant_ratio"), (hexahedra.tetrahedra(), "constant_bulk_modulus")] {
         let rule = format!("material.poisson_rule={rule}");
         let changes = [&regularised[..], &[&rule]].concat();
-        let face = on(&body, &surfaces, SCENE, &changes).done();
+        let face = on(&body, &surfaces, &SCENE, &changes).done();
         for ranks in [1, 3] {
             let whole =
-                on(&body, &surfaces, SCENE, &[&changes[..], &["solver.strategy=monolithic"]].concat()).ranks(ranks);
+                on(&body, &surfaces, &SCENE, &[&changes[..], &["solver.strategy=monolithic"]].concat()).ranks(ranks);
             assert_same(&face, &whole.done(), 1e-8, &format!("{rule} on {ranks}"));
         }
     }
@@ -238,7 +209,7 @@ fn bowed_faces() {
             "material.arms=[]",
             "friction.coefficient=0.0",
         ];
-        on(&Body::layer(SIZES, [n, n, n / 2]).moved(moved), &surfaces, SCENE, &changes).done().at(1.0, "normal_force")
+        on(&Body::layer(SIZES, [n, n, n / 2]).moved(moved), &surfaces, &SCENE, &changes).done().at(1.0, "normal_force")
     };
     let apart = [2e-3, 1e-3].map(|by| force(by, 2.0 * by, 6, true) / force(by, 2.0 * by, 6, false) - 1.0);
     println!("bowed over flat: {apart:?}");
@@ -271,7 +242,7 @@ fn hertz() {
         "solver.tolerance=1e-9",
     ];
     let off = |body: &Body| {
-        let outcome = on(body, &SURFACES, SCENE, &changes).done();
+        let outcome = on(body, &SURFACES, &SCENE, &changes).done();
         let (force, results) = (outcome.at(1.0, "normal_force"), outcome.results());
         let radius = (3.0 * force * RADIUS / (4.0 * reduced)).cbrt();
         let highest = 3.0 * force / (2.0 * std::f64::consts::PI * radius * radius);

@@ -8,62 +8,18 @@ use std::path::Path;
 use std::process::Stdio;
 
 use common::msh::write_msh;
-use common::program::{Outcome, Run, assert_same, ends_with, output_of, program, wait_for};
+use common::program::{Outcome, Run, assert_same, ends_with, output_of, program, solved, wait_for};
+use common::scene::{RUBBER, Text};
 use common::solid::{Body, Surface};
 use mpjr::mesh::{Layer, Sides};
 
 /// A parabola that is pressed in and slid over rubber whose friction warms it by some kelvin.
-const SCENE: &str = r#"
-[layer]
-width = 0.02
-depth = 4e-3
-cells = [40, 8]
-grading = 3.0
-sides = "periodic"
-[material]
-young_modulus = 1e7
-poisson_ratio = 0.3
-arms = [ { weight = 0.3, time = 0.01 }, { weight = 0.3, time = 0.1 } ]
-poisson_rule = "constant_ratio"
-conductivity = 0.2
-heat_capacity = 2e5
-shift = "wlf"
-c1 = 17.44
-c2 = 51.6
-reference_temperature = 288.0
-temperature = 293.0
-[indenter]
-profile = "parabola"
-radius = 0.02
-centre = 0.01
-[contact]
-[friction]
-law = "coulomb"
-coefficient = 0.4
-[heat]
-initial = 293.0
-base = 293.0
-coupled = true
-convection = { coefficient = 200.0, temperature = 300.0 }
-[[phase]]
-name = "press"
-duration = 0.1
-steps = 5
-approach = 2e-4
-[[phase]]
-name = "slide"
-velocity = 0.02
-duration = 0.5
-steps = 25
-"#;
-
-fn run(scene: &str, changes: &[&str]) -> Outcome {
-    changes.iter().fold(Run::new(scene), |run, change| run.set(*change)).done()
-}
-
-fn path(outcome: &Outcome) -> std::path::PathBuf {
-    outcome.directory.path().join("scene.h5")
-}
+static SCENE: Text = Text::new(|| {
+    let material = "heat_capacity = 2e5\nshift = \"wlf\"\nc1 = 17.44\nc2 = 51.6\nreference_temperature = 288.0\ntemperature = 293.0";
+    let heat = "[heat]\ninitial = 293.0\nbase = 293.0\ncoupled = true\n";
+    let air = "convection = { coefficient = 200.0, temperature = 300.0 }\n";
+    [RUBBER[0], material, RUBBER[1], heat, air].concat()
+});
 
 /// The histories of forces and of energies are the same to so much of the largest value.
 fn alike(one: &Outcome, other: &Outcome, within: f64) {
@@ -105,10 +61,10 @@ fn at_a_uniform_temperature_times_are_scaled() {
             "material.memory=\"backward_euler\"",
         ],
     ] {
-        alike(&run(&still(&scene), changes), &run(&scene, changes), 1e-9);
+        alike(&solved(&still(&scene), changes), &solved(&scene, changes), 1e-9);
     }
     let arrhenius = scene.replace("\"wlf\"\nc1 = 17.44\nc2 = 51.6", "\"arrhenius\"\nactivation_energy = 8e4");
-    alike(&run(&still(&arrhenius), &[]), &run(&arrhenius, &[]), 1e-9);
+    alike(&solved(&still(&arrhenius), &[]), &solved(&arrhenius, &[]), 1e-9);
 }
 
 /// Layer P with temperatures from 293 K at the base to 303 K at the face, under a flat indenter with 0.5 N/m from a ramp of `RAMP` on:
@@ -181,7 +137,7 @@ fn gradient() -> f64 {
 fn a_gradient_of_temperature_is_the_closed_form() {
     let exact = gradient();
     let errors = [8, 16, 32].map(|rows| {
-        let found = run(GRADIENT, &[&format!("layer.cells=[2, {rows}]")]);
+        let found = solved(GRADIENT, &[&format!("layer.cells=[2, {rows}]")]);
         (found.last("approach") - exact) / exact
     });
     for pair in errors.windows(2) {
@@ -198,13 +154,13 @@ fn energies_balance() {
         let (left, work) = (outcome.history("energy/imbalance"), outcome.last("energy/external_work"));
         left.iter().fold(0.0_f64, |most, left| most.max(left.abs())) / work
     };
-    let cold = apart(&run(SCENE, &["heat.coupled=false"]));
+    let cold = apart(&solved(&SCENE, &["heat.coupled=false"]));
     for changes in [
         &["heat.arms=true"][..],
         &["heat.arms=true", "layer.sides=\"free\"", "material.poisson_rule=\"constant_bulk_modulus\""],
         &["heat.arms=true", "layer.width=[0.02, 0.008]", "layer.cells=[10, 4, 3]"],
     ] {
-        let outcome = run(SCENE, changes);
+        let outcome = solved(&SCENE, changes);
         assert!(apart(&outcome) < 1e-3, "{}", apart(&outcome));
         let energy = |name: &str| outcome.history(&format!("energy/{name}"));
         let columns = ["heat", "heat_stored", "heat_convected", "heat_conducted"].map(energy);
@@ -226,8 +182,8 @@ fn energies_balance() {
 /// In space, a profile that does not depend on y warms and shifts what it does in the plane.
 #[test]
 fn space_is_the_plane() {
-    let plane = run(SCENE, &[]);
-    let space = run(SCENE, &["layer.width=[0.02, 0.004]", "layer.cells=[40, 2, 8]"]);
+    let plane = solved(&SCENE, &[]);
+    let space = solved(&SCENE, &["layer.width=[0.02, 0.004]", "layer.cells=[40, 2, 8]"]);
     for name in ["normal_force", "tangential_force", "hysteretic_force", "energy/viscoelastic_dissipation"] {
         for (a, b) in plane.history(name).iter().zip(space.history(name)) {
             let largest = plane.history(name).iter().fold(0.0_f64, |most, value| most.max(value.abs()));
@@ -239,8 +195,8 @@ fn space_is_the_plane() {
 /// On three ranks as on one, to the last bit.
 #[test]
 fn ranks_make_no_difference() {
-    let with = |ranks| Run::new(SCENE).ranks(ranks).set("heat.arms=true").set("output.bulk_at=[\"slide\"]").done();
-    assert_same(&path(&with(1)), &path(&with(3)), 0.0);
+    let with = |ranks| Run::new(&SCENE).ranks(ranks).set("heat.arms=true").set("output.bulk_at=[\"slide\"]").done();
+    assert_same(&with(1).file(), &with(3).file(), 0.0);
 }
 
 /// A run that is killed goes on with the same bits.
@@ -271,7 +227,7 @@ fn checkpoints_keep_every_bit() {
 #[test]
 fn adaptive_steps_follow_the_temperature() {
     let adaptive = SCENE.replace("steps = 25", "tolerance = 0.1").replace("heat_capacity = 2e5", "heat_capacity = 5e4");
-    let (coupled, one_way) = (run(&adaptive, &[]), run(&adaptive, &["heat.coupled=false"]));
+    let (coupled, one_way) = (solved(&adaptive, &[]), solved(&adaptive, &["heat.coupled=false"]));
     let log = |t: f64| -17.44 * std::f64::consts::LN_10 * (t - 288.0) / (51.6 + t - 288.0);
     let most = |outcome: &Outcome| {
         let hottest = outcome.history("max_temperature");
@@ -297,7 +253,7 @@ fn friction_rises_and_falls_as_rubber_gets_hot() {
         .replace("duration = 0.5\nsteps = 25", "distance = 0.06\nsteps = 60");
     let friction = |velocity: f64, coupled: bool| {
         let changes = [format!("phase.slide.velocity={velocity}"), format!("heat.coupled={coupled}")];
-        run(&scene, &changes.each_ref().map(String::as_str)).last("hysteretic_force")
+        solved(&scene, &changes.each_ref().map(String::as_str)).last("hysteretic_force")
     };
     let [cold, hot] = [false, true].map(|coupled| [0.01, 0.03, 0.1, 0.3].map(|velocity| friction(velocity, coupled)));
     assert!(cold.windows(2).all(|pair| pair[1] > 2.5 * pair[0]), "{cold:?}");
@@ -310,7 +266,7 @@ fn on_a_mesh(layer: &str, wide: f64, write: &dyn Fn(&Path)) {
     for coupled in ["heat.coupled=false", "heat.coupled=true"] {
         let changes = [coupled, "layer.sides=\"free\"", "layer.grading=1.0", layer, "heat.arms=true"];
         let changes = [&changes[..], if wide > 0.0 { &["layer.width=[0.02, 0.008]"] } else { &[] }].concat();
-        let of_layer = run(SCENE, &changes);
+        let of_layer = solved(&SCENE, &changes);
         let (_, after) = SCENE.split_once("[material]").unwrap();
         let mesh = format!("[mesh]\nfile = \"body.msh\"\ncontact = \"top\"\nfixed = [\"base\"]\n[material]{after}");
         let run = Run::new(&mesh).set(coupled).set("heat.arms=true");
@@ -364,7 +320,7 @@ fn a_large_face_is_refused() {
 fn what_check_prints_is_the_scene() {
     let directory = tempfile::tempdir().unwrap();
     let [given, resolved] = ["given.toml", "resolved.toml"].map(|name| directory.path().join(name));
-    std::fs::write(&given, SCENE).unwrap();
+    std::fs::write(&given, &**SCENE).unwrap();
     let printed = |file: &Path| output_of(program(1).arg("check").arg(file));
     let keys = |text: &str| -> Vec<String> {
         text.lines().filter(|line| !line.starts_with('#') && !line.starts_with("title")).map(str::to_owned).collect()

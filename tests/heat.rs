@@ -7,59 +7,17 @@ mod common;
 use std::path::Path;
 use std::process::Stdio;
 
-use common::program::{Outcome, Run, assert_same, numbers, output_of, program, wait_for};
+use common::program::{Outcome, Run, assert_same, numbers, output_of, program, solved, wait_for};
+use common::scene::{RUBBER, Text};
 
 /// A parabola that is pressed in and slid, with arms, air and a held base.
-const SCENE: &str = r#"
-[layer]
-width = 0.02
-depth = 4e-3
-cells = [40, 8]
-grading = 3.0
-sides = "periodic"
-[material]
-young_modulus = 1e7
-poisson_ratio = 0.3
-arms = [ { weight = 0.3, time = 0.01 }, { weight = 0.3, time = 0.1 } ]
-poisson_rule = "constant_ratio"
-conductivity = 0.2
-heat_capacity = 2e6
-[indenter]
-profile = "parabola"
-radius = 0.02
-centre = 0.01
-[contact]
-[friction]
-law = "coulomb"
-coefficient = 0.4
-[heat]
-initial = 293.0
-base = 290.0
-share = 0.75
-convection = { coefficient = 200.0, temperature = 300.0 }
-[[phase]]
-name = "press"
-duration = 0.1
-steps = 5
-approach = 2e-4
-[[phase]]
-name = "slide"
-velocity = 0.02
-duration = 0.5
-steps = 25
-[output]
-bulk_at = ["slide"]
-"#;
+static SCENE: Text = Text::new(|| {
+    let heat = "[heat]\ninitial = 293.0\nbase = 290.0\nshare = 0.75\n";
+    let air = "convection = { coefficient = 200.0, temperature = 300.0 }\n";
+    [RUBBER[0], "heat_capacity = 2e6", RUBBER[1], heat, air, "[output]\nbulk_at = [\"slide\"]\n"].concat()
+});
 const BULK: &str = "material.poisson_rule=\"constant_bulk_modulus\"";
 const TEMPERATURE: &str = "friction.coefficient=\"0.4*exp(-(T - 293)/2)\"";
-
-fn run(changes: &[&str]) -> Outcome {
-    changes.iter().fold(Run::new(SCENE), |run, change| run.set(*change)).done()
-}
-
-fn path(outcome: &Outcome) -> std::path::PathBuf {
-    outcome.directory.path().join("scene.h5")
-}
 
 /// What entered is stored, given to the air or to the base, at every step, to round-off of the most that there is of them; and it is
 /// the share of what friction dissipated and, where they heat, all that the arms did.
@@ -96,7 +54,7 @@ fn what_enters_is_what_friction_lost_and_goes_somewhere() {
             "friction={law=\"coulomb_elastic_slip\",coefficient=0.4,elastic_slip=1e-6}",
         ],
     ] {
-        balances(&run(changes), false);
+        balances(&solved(&SCENE, changes), false);
     }
     let adaptive = SCENE.replace("steps = 25\n", "tolerance = 1e-2\n");
     balances(&Run::new(&adaptive).done(), false);
@@ -117,7 +75,7 @@ fn arms_heat_with_all_that_they_dissipate() {
         ],
         &["heat.arms=true", "layer.width=[0.02, 0.008]", "layer.cells=[10, 4, 3]", "heat.base=\"insulated\""],
     ] {
-        let outcome = run(changes);
+        let outcome = solved(&SCENE, changes);
         balances(&outcome, true);
         assert!(outcome.last("max_temperature") > outcome.last("mean_temperature"));
     }
@@ -128,9 +86,9 @@ fn arms_heat_with_all_that_they_dissipate() {
 fn heat_is_one_way() {
     let cold = SCENE.replace("[heat]\ninitial = 293.0\nbase = 290.0\nshare = 0.75\nconvection = { coefficient = 200.0, temperature = 300.0 }\n", "");
     assert!(!cold.contains("[heat]"));
-    let (cold, warm) = (Run::new(&cold).done(), run(&["heat.arms=true"]));
-    let warm = numbers(&path(&warm));
-    for (name, values) in numbers(&path(&cold)) {
+    let (cold, warm) = (Run::new(&cold).done(), solved(&SCENE, &["heat.arms=true"]));
+    let warm = numbers(&warm.file());
+    for (name, values) in numbers(&cold.file()) {
         let found = &warm.iter().find(|(other, _)| *other == name).unwrap().1;
         assert!(found.iter().zip(&values).all(|(a, b)| a.to_bits() == b.to_bits()), "{name}");
     }
@@ -140,10 +98,10 @@ fn heat_is_one_way() {
 #[test]
 fn ranks_make_no_difference() {
     for changes in [&["heat.arms=true", TEMPERATURE][..], &["layer.sides=\"free\"", BULK, "output.bulk_at=[]"]] {
-        let with = |ranks| changes.iter().fold(Run::new(SCENE).ranks(ranks), |run, change| run.set(*change)).done();
+        let with = |ranks| changes.iter().fold(Run::new(&SCENE).ranks(ranks), |run, change| run.set(*change)).done();
         let (one, three) = (with(1), with(3));
         // The interior behind the face is distributed where arms heat.
-        assert_same(&path(&one), &path(&three), if changes.len() == 2 { 1e-11 } else { 0.0 });
+        assert_same(&one.file(), &three.file(), if changes.len() == 2 { 1e-11 } else { 0.0 });
     }
 }
 
@@ -154,7 +112,7 @@ fn a_sparse_factor_is_the_waves() {
     let still = ["phase.slide.velocity=0.0", "heat.base=\"insulated\"", "layer.cells=[40, 8]"];
     let [waves, sparse] = ["periodic", "roller"].map(|sides| {
         let sides = format!("layer.sides=\"{sides}\"");
-        run(&[&still[..], &[sides.as_str()]].concat())
+        solved(&SCENE, &[&still[..], &[sides.as_str()]].concat())
     });
     let last = |outcome: &Outcome| outcome.results().interface("temperature").unwrap();
     let (one, other) = (last(&waves), last(&sparse));
@@ -169,8 +127,8 @@ fn a_sparse_factor_is_the_waves() {
 #[test]
 fn space_is_the_plane() {
     for more in [&[][..], &[TEMPERATURE]] {
-        let plane = run(more);
-        let space = run(&[&["layer.width=[0.02, 0.004]", "layer.cells=[40, 3, 8]"], more].concat());
+        let plane = solved(&SCENE, more);
+        let space = solved(&SCENE, &[&["layer.width=[0.02, 0.004]", "layer.cells=[40, 3, 8]"], more].concat());
         for name in ["max_temperature", "mean_temperature"] {
             for (a, b) in plane.history(name).iter().zip(space.history(name)) {
                 assert!((a - b).abs() < 1e-9 * 293.0, "{name}: {a} {b}");
@@ -186,7 +144,7 @@ fn space_is_the_plane() {
 /// The coefficient of a step is that of the temperature at its beginning: q = f(T_n) p where a node slips, to the last digits.
 #[test]
 fn friction_knows_the_temperature_of_the_beginning() {
-    let outcome = run(&[TEMPERATURE]);
+    let outcome = solved(&SCENE, &[TEMPERATURE]);
     let [p, q, temperature] =
         ["pressure", "shear", "temperature"].map(|name| outcome.results().interface(name).unwrap());
     let (mut slipping, mut least) = (0, f64::INFINITY);
@@ -206,7 +164,7 @@ fn friction_knows_the_temperature_of_the_beginning() {
 /// The body at rest is at its initial temperature, in row 0; temperatures of the bulk have those of the face in them.
 #[test]
 fn temperatures_begin_where_they_are_told() {
-    let outcome = run(&["layer.width=[0.02, 0.008]", "layer.cells=[10, 4, 3]"]);
+    let outcome = solved(&SCENE, &["layer.width=[0.02, 0.008]", "layer.cells=[10, 4, 3]"]);
     assert_eq!(outcome.history("max_temperature")[0], 293.0);
     let (bulk, face) =
         (outcome.results().bulk("temperature").unwrap(), outcome.results().interface("temperature").unwrap());

@@ -5,31 +5,14 @@ mod common;
 
 use common::loads::PHASES;
 use common::program::{Outcome, Run};
+use common::scene::{TWO_ARMS, Text, layer, regularised};
 
 /// A layer of two arms under a wave, with laws that are regularised.
-const LAYER: &str = r#"
-[layer]
-width = 1.0
-depth = 1.0
-cells = [32, 16]
-sides = "periodic"
-[material]
-shear_modulus = 568.498
-poisson_ratio = 0.3
-arms = [ { weight = 0.3, time = 0.2 }, { weight = 0.4, time = 2.0 } ]
-poisson_rule = "constant_ratio"
-[indenter]
-profile = "expression"
-formula = "1e-3+5e-4*(1-cos(2*pi*x))"
-[contact]
-penalty = 1e6
-[friction]
-law = "coulomb_tanh"
-coefficient = 0.2
-regularisation = 1e-3
-[solver]
-tolerance = 1e-11
-"#;
+static LAYER: Text = Text::new(|| {
+    let indenter = "[indenter]\nprofile = \"expression\"\nformula = \"1e-3+5e-4*(1-cos(2*pi*x))\"\n";
+    let laws = regularised("1e6", "0.2");
+    [&layer("1.0", "1.0", "[32, 16]"), TWO_ARMS, indenter, &laws, "[solver]\ntolerance = 1e-11\n"].concat()
+});
 
 /// Masses on springs and dashpots, lowered, slid and turned round.
 const MOUNTS: &str = r#"
@@ -129,12 +112,12 @@ fn both_strategies_hold_an_indenter_alike() {
     let fixed = [ELASTIC_SLIP, BULK, "layer.sides=fixed", "material.memory=backward_euler", middle];
     let kinked = [ELASTIC_SLIP, "indenter.formula=1e-3+2e-3*abs(x-0.5)", "layer.sides=roller"];
     let cases: [(&str, &str, &[&str], bool); 8] = [
-        (LAYER, PHASES, &[], true),
-        (LAYER, PHASES, &kinked, false),
-        (LAYER, PHASES, &[BULK, "contact.quadrature=gauss", "contact.penalty=3e4"], false),
-        (LAYER, MOUNTS, &gentle, true),
-        (LAYER, MOUNTS, &fixed, false),
-        (LAYER, MOUNTS, &large, false),
+        (&LAYER, PHASES, &[], true),
+        (&LAYER, PHASES, &kinked, false),
+        (&LAYER, PHASES, &[BULK, "contact.quadrature=gauss", "contact.penalty=3e4"], false),
+        (&LAYER, MOUNTS, &gentle, true),
+        (&LAYER, MOUNTS, &fixed, false),
+        (&LAYER, MOUNTS, &large, false),
         (SPACE, "", &[], true),
         (SPACE, "", &softer, false),
     ];
@@ -157,7 +140,7 @@ fn both_strategies_hold_an_indenter_alike() {
 /// square of the one before, over that, down to round-off, 1e-12. No step takes more than five iterations to 1e-11.
 #[test]
 fn places_converge_quadratically() {
-    let scene = format!("{LAYER}{MOUNTS}").replace("\"coulomb_tanh\"", "\"coulomb_elastic_slip\"");
+    let scene = [&LAYER, MOUNTS].concat().replace("\"coulomb_tanh\"", "\"coulomb_elastic_slip\"");
     let run = Run::new(&scene.replace("regularisation = 1e-3", "elastic_slip = 1e-3"))
         .set("solver.strategy=monolithic")
         .set("contact.penalty=3e4")
@@ -184,7 +167,7 @@ fn places_converge_quadratically() {
 /// The linear systems with places are the program's own: a preconditioner of PETSc's is refused, another Krylov method taken.
 #[test]
 fn a_preconditioner_of_petsc_is_refused() {
-    let held = || Run::new(&format!("{LAYER}{MOUNTS}")).set("solver.strategy=monolithic");
+    let held = || Run::new(&[&*LAYER, MOUNTS].concat()).set("solver.strategy=monolithic");
     let outcome = held().petsc("-pc_type lu").run();
     assert_eq!(outcome.code, 2, "{}", outcome.stderr);
     outcome.assert_single_message("leave -pc_type out");

@@ -1,42 +1,29 @@
 //! Measured surfaces: what differs only in how it is written gives the same contact, and a map is what it is a map of.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod common;
+
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 use std::process::Command;
 
+use common::compare::difference;
+use common::program::run_in;
+use common::scene::{ONE_ARM, Text, coulomb, layer};
 use mpjr::composition::{Shape, elevations, inputs, outline, shape};
-use mpjr::output::reader::Results;
 use mpjr::profile::Surface;
 use mpjr::scene::{Source, read};
 use nalgebra::Vector2;
 
-const BODY: &str = r#"
-[material]
-shear_modulus = 568.498
-poisson_ratio = 0.3
-arms = [ { weight = 0.579, time = 0.817 } ]
-poisson_rule = "constant_ratio"
-[contact]
-[friction]
-law = "coulomb"
-coefficient = 0.2
-[solver]
-tolerance = 1e-13
-[[phase]]
-duration = 1.0
-steps = 3
-approach = 5e-4
-[[phase]]
-velocity = 0.02
-distance = 0.0537
-steps = 5
-[indenter]
-"#;
-const SPACE: &str = "[layer]\nwidth = [1.0, 0.5]\ndepth = 0.5\ncells = [16, 8, 4]\nsides = \"periodic\"\n";
-const PLANE: &str = "[layer]\nwidth = 1.0\ndepth = 0.5\ncells = [16, 4]\nsides = \"periodic\"\n";
+static BODY: Text = Text::new(|| {
+    let press = "[[phase]]\nduration = 1.0\nsteps = 3\napproach = 5e-4\n";
+    let slide = "[[phase]]\nvelocity = 0.02\ndistance = 0.0537\nsteps = 5\n";
+    [ONE_ARM, &coulomb("0.2"), "[solver]\ntolerance = 1e-13\n", press, slide, "[indenter]\n"].concat()
+});
+static SPACE: Text = Text::new(|| layer("[1.0, 0.5]", "0.5", "[16, 8, 4]"));
+static PLANE: Text = Text::new(|| layer("1.0", "0.5", "[16, 4]"));
 
 /// An array as NumPy writes it, version 1.
 fn npy(columns: usize, rows: usize, h: impl Fn(usize, usize) -> f64) -> Vec<u8> {
@@ -48,11 +35,7 @@ fn npy(columns: usize, rows: usize, h: impl Fn(usize, usize) -> f64) -> Vec<u8> 
 
 /// All forces of a run in `directory`, and the pressure at every node and time.
 fn run(directory: &Path, text: &str) -> [Vec<f64>; 4] {
-    let [scene, out] = ["scene.toml", "scene.h5"].map(|name| directory.join(name));
-    std::fs::write(&scene, text).unwrap();
-    let output = mpjr(directory, &["run", "scene.toml", "-q"]);
-    assert!(output.0, "{}", output.1);
-    let results = Results::open(&out).unwrap();
+    let results = run_in(directory, text, 1);
     let force = |name: &str| results.history(name).unwrap();
     let pressure = results.interface("pressure").unwrap().values;
     [force("normal_force"), force("tangential_force"), force("hysteretic_force"), pressure]
@@ -64,13 +47,6 @@ fn mpjr(directory: &Path, arguments: &[&str]) -> (bool, String) {
     let output = command.args(arguments).current_dir(directory).output().unwrap();
     let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     (output.status.success(), said.concat())
-}
-
-/// The greatest difference of two lists, relative to the greatest value.
-fn difference(one: &[f64], other: &[f64]) -> f64 {
-    let scale = one.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    assert!(scale > 0.0 && one.len() == other.len());
-    one.iter().zip(other).map(|(a, b)| (a - b).abs() / scale).fold(0.0, f64::max)
 }
 
 /// Pressures of a map of a smooth surface go to those of its formula with the square of the spacing, the hysteretic force, which
@@ -87,7 +63,7 @@ fn a_map_of_a_formula_converges_to_it() {
         3e-4 * (1.0 - (2.0 * PI * x).cos()) + 1e-4 * (1.0 - phase.cos())
     };
     let body = BODY.replace("approach = 5e-4", "approach = 3e-3").replace("0.0537", "0.1388888888888889");
-    let exact = run(directory, &format!("{SPACE}{body}{formula}"));
+    let exact = run(directory, &(SPACE.clone() + &body + &formula));
     let error = |n: usize| {
         let at = |i: usize, j: usize| h(i as f64 / n as f64, 0.5 * j as f64 / n as f64);
         std::fs::write(directory.join("map.npy"), npy(n, n, at)).unwrap();
@@ -96,7 +72,7 @@ fn a_map_of_a_formula_converges_to_it() {
             1.0 / n as f64,
             0.5 / n as f64
         );
-        let found = run(directory, &format!("{SPACE}{body}{indenter}"));
+        let found = run(directory, &(SPACE.clone() + &body + &indenter));
         [2, 3].map(|which| difference(&exact[which], &found[which]))
     };
     let errors = [48, 96, 192].map(error);
@@ -124,8 +100,8 @@ fn the_same_for_every_y_is_the_plane() {
     let keys = "extend = \"periodic\"\ninvert = true\ndetrend = \"mean\"\noffset = 2e-4\n";
     let sampled = format!("profile = \"sampled\"\nfile = \"line.txt\"\n{keys}");
     let map = format!("profile = \"map\"\nfile = \"map.npy\"\nspacing = [0.025, 0.125]\n{keys}");
-    let plane = run(directory, &format!("{PLANE}{BODY}{sampled}"));
-    let mut space = run(directory, &format!("{SPACE}{BODY}{map}"));
+    let plane = run(directory, &(PLANE.clone() + &BODY + &sampled));
+    let mut space = run(directory, &(SPACE.clone() + &BODY + &map));
     space[..3].iter_mut().flatten().for_each(|force| *force /= 0.5);
     // Every node of the plane stands for eight.
     let every = plane[3].iter().flat_map(|pressure| [*pressure; 8]).collect();
@@ -196,7 +172,7 @@ fn every_format_is_the_same_surface() {
     let directory = tempfile::tempdir().unwrap();
     let wide = |indenter: &str| {
         // The map repeats after 1.5 m along y: so does the layer.
-        let text = format!("{}{BODY}{indenter}", SPACE.replace("[1.0, 0.5]", "[1.0, 1.5]"));
+        let text = SPACE.replace("[1.0, 0.5]", "[1.0, 1.5]") + &BODY + indenter;
         let file = directory.path().join("scene.toml");
         let scene = read(&text, &Source { file: file.clone(), overrides: Vec::new() }).unwrap();
         let numbers = elevations(&scene, &file).unwrap();
@@ -234,7 +210,7 @@ fn bounded_maps_cover_the_face() {
             overrides: vec!["layer.sides=\"free\"".to_owned(), "layer.depth=0.4".to_owned()],
         };
         let make = || {
-            let scene = read(&format!("{SPACE}{BODY}{text}"), &source)?;
+            let scene = read(&(SPACE.clone() + &BODY + &text), &source)?;
             shape(&scene, &file, &elevations(&scene, &file)?, &outline(&scene, &file)?)
         };
         make().map(drop).map_err(|error: mpjr::error::Error| error.to_string())
@@ -289,7 +265,7 @@ fn check_draws_the_map_and_doubts_it() {
     let bowl = |i: usize, j: usize| 1e-4 * ((i as f64 / 31.0 - 0.1).powi(2) + (j as f64 / 31.0 - 0.9).powi(2));
     std::fs::write(directory.join("m.npy"), npy(32, 32, bowl)).unwrap();
     let indenter = "profile = \"map\"\nfile = \"m.npy\"\nextend = \"periodic\"\nspacing = [0.03125, 0.015625]\n";
-    std::fs::write(directory.join("scene.toml"), format!("{SPACE}{BODY}{indenter}")).unwrap();
+    std::fs::write(directory.join("scene.toml"), [&SPACE, &BODY, indenter].concat()).unwrap();
     let (done, said) = mpjr(directory, &["check", "scene.toml"]);
     assert!(done, "{said}");
     let lines: Vec<&str> = said.lines().filter(|line| line.contains('|')).collect();

@@ -4,32 +4,15 @@
 mod common;
 
 use common::program::{MPJR, Outcome, Run, assert_same, ends_with, output_of, program};
+use common::scene::{COSINE, ONE_ARM, Text, coulomb, layer};
 use std::fs;
 use std::process::Command;
 
 /// A layer of one arm under a wave, with Coulomb's law itself.
-const LAYER: &str = r#"
-[layer]
-width = 1.0
-depth = 1.0
-cells = [32, 16]
-sides = "periodic"
-[material]
-shear_modulus = 568.498
-poisson_ratio = 0.3
-arms = [ { weight = 0.579, time = 0.817 } ]
-poisson_rule = "constant_ratio"
-[indenter]
-profile = "harmonic"
-amplitude = 5e-4
-wavelength = 1.0
-[contact]
-[friction]
-law = "coulomb"
-coefficient = 0.2
-[solver]
-tolerance = 1e-12
-"#;
+static LAYER: Text = Text::new(|| {
+    let rest = coulomb("0.2") + "[solver]\ntolerance = 1e-12\n";
+    [&layer("1.0", "1.0", "[32, 16]"), ONE_ARM, COSINE, &rest].concat()
+});
 
 /// Loaded, slid, reversed and let go: every kind of phase, in binary fractions of time.
 const PHASES: &str = r#"
@@ -81,11 +64,11 @@ fn record(run: &Outcome, [from, to]: [f64; 2], columns: &[&str]) -> String {
 /// and sliding, as the phases had; and the states of a ramp of load are those of the approach that it traced.
 #[test]
 fn a_replayed_history_is_the_history() {
-    let original = Run::new(&(LAYER.to_owned() + PHASES)).done();
+    let original = Run::new(&(LAYER.clone() + PHASES)).done();
     let phase =
         |name: &str, steps: usize| format!("[[phase]]\nname = \"{name}\"\nsteps = {steps}\nmotion = \"{name}.csv\"\n");
     let phases = [("load", 16), ("slide", 16), ("shake", 16), ("off", 8)].map(|(name, steps)| phase(name, steps));
-    let scene = LAYER.to_owned() + &phases.concat();
+    let scene = LAYER.clone() + &phases.concat();
     let rest = [
         ("shake.csv", record(&original, [4.0, 5.0], &["approach", "sliding"])),
         ("off.csv", record(&original, [5.0, 6.0], &["approach"])),
@@ -106,7 +89,7 @@ fn a_replayed_history_is_the_history() {
 /// shorter than the file's; what the file does not say stays as it is.
 #[test]
 fn rows_are_joined_by_straight_lines() {
-    let scene = LAYER.to_owned()
+    let scene = LAYER.clone()
         + "[[phase]]\nsteps = 8\nmotion = \"press.csv\"\n[[phase]]\nduration = 3.0\nsteps = 12\nmotion = \"slide.csv\"\n";
     let files = [
         ("press.csv", "time (ms); approach (mm)\n500; 1.0\n2000; 0.7\n".to_owned()),
@@ -131,7 +114,7 @@ fn rows_are_joined_by_straight_lines() {
 /// Steps that are chosen end at each row, and at the moments of bulk output beside them, where alone there are bulk fields.
 #[test]
 fn chosen_steps_end_at_rows() {
-    let scene = LAYER.to_owned() + "[[phase]]\ntolerance = 1e-2\nmotion = \"press.csv\"\n[output]\nbulk_at = [0.7]\n";
+    let scene = LAYER.clone() + "[[phase]]\ntolerance = 1e-2\nmotion = \"press.csv\"\n[output]\nbulk_at = [0.7]\n";
     let rows = "time, approach, sliding\n0, 0, 0\n0.3, 4e-4, 0\n0.55, 1e-3, 0.001\n1.1, 1e-3, 0.002\n";
     let run = with_files(&scene, &[("press.csv", rows.to_owned())]).done();
     let times = run.history("time");
@@ -146,7 +129,7 @@ fn chosen_steps_end_at_rows() {
 /// that is to go on and by a sweep.
 #[test]
 fn a_changed_file_is_noticed() {
-    let scene = LAYER.to_owned() + "[[phase]]\nname = \"press\"\nsteps = 4\nmotion = \"press.csv\"\n";
+    let scene = LAYER.clone() + "[[phase]]\nname = \"press\"\nsteps = 4\nmotion = \"press.csv\"\n";
     let [before, after] = ["1e-3", "1.1e-3"].map(|depth| format!("time, approach\n1, {depth}\n"));
     let run = with_files(&scene, &[("press.csv", before.clone())]);
     let directory = run.directory();
@@ -203,7 +186,7 @@ fn the_bytes_of_a_file_are_among_the_inputs() {
 /// Several ranks read it as one does.
 #[test]
 fn ranks_agree() {
-    let scene = LAYER.to_owned() + "[[phase]]\nsteps = 8\nmotion = \"press.csv\"\n";
+    let scene = LAYER.clone() + "[[phase]]\nsteps = 8\nmotion = \"press.csv\"\n";
     let files = [("press.csv", "time, normal_force, sliding\n1, 0.5, 0\n2, 0.4, 0.03\n".to_owned())];
     let [alone, together] = [1, 2].map(|ranks| with_files(&scene, &files).ranks(ranks).done());
     let file = |run: &Outcome| run.directory.path().join("scene.h5");

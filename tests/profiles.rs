@@ -5,41 +5,21 @@ mod common;
 
 use std::path::Path;
 
+use common::compare;
+use common::program::run_in;
+use common::scene::{ONE_ARM, Text, layer};
 use mpjr::composition::{Shape, elevations, outline, seam_doubt, shape};
 use mpjr::oracle::{Layer, Moduli};
-use mpjr::output::reader::Results;
 use mpjr::profile::Profile;
 use mpjr::scene::{Penalty, Scene, Source, added_compliance, read, shortest_step};
 
-const SCENE: &str = r#"
-[layer]
-width = 1.0
-depth = 0.5
-cells = [32, 4]
-sides = "periodic"
-[material]
-shear_modulus = 568.498
-poisson_ratio = 0.3
-arms = [ { weight = 0.579, time = 0.817 } ]
-poisson_rule = "constant_ratio"
-[contact]
-tolerance = 1e-2
-[friction]
-law = "coulomb_tanh"
-coefficient = 0.2
-regularisation = 2e-4
-[solver]
-tolerance = 1e-14
-[[phase]]
-duration = 1.0
-steps = 3
-approach = 4e-4
-[[phase]]
-velocity = 0.02
-distance = 0.11
-steps = 5
-[indenter]
-"#;
+static SCENE: Text = Text::new(|| {
+    let law = "law = \"coulomb_tanh\"\ncoefficient = 0.2\nregularisation = 2e-4\n";
+    let rest = format!("[contact]\ntolerance = 1e-2\n[friction]\n{law}[solver]\ntolerance = 1e-14\n");
+    let press = "[[phase]]\nduration = 1.0\nsteps = 3\napproach = 4e-4\n";
+    let slide = "[[phase]]\nvelocity = 0.02\ndistance = 0.11\nsteps = 5\n";
+    [&layer("1.0", "0.5", "[32, 4]"), ONE_ARM, &rest, press, slide, "[indenter]\n"].concat()
+});
 
 const HARMONIC: &str = "profile = \"harmonic\"\namplitude = 5e-4\nwavelength = 1.0\n";
 const ROUGH: &str = "profile = \"rough\"\nhurst = 0.8\nrms_height = 2e-4\nshortest = 0.125\nlongest = 0.5\nseed = 11\n";
@@ -55,24 +35,15 @@ fn write_cosine(file: &Path, points: usize) -> Vec<f64> {
 
 /// Normal, tangential and hysteretic force of all steps of a run in `directory`.
 fn run(directory: &Path, indenter: &str, ranks: usize) -> [Vec<f64>; 3] {
-    let [scene, out] = ["scene.toml", "scene.h5"].map(|name| directory.join(name));
-    std::fs::write(&scene, SCENE.to_owned() + indenter).unwrap();
-    let mut command = common::mpi::mpirun(ranks);
-    command.arg(env!("CARGO_BIN_EXE_mpjr")).arg("run").arg(&scene).arg("--out").arg(&out);
-    let output = command.env("OMP_NUM_THREADS", "1").output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let results = Results::open(&out).unwrap();
+    let results = run_in(directory, &(SCENE.clone() + indenter), ranks);
     ["normal_force", "tangential_force", "hysteretic_force"].map(|name| results.history(name).unwrap())
 }
 
 /// The greatest difference of each force of two runs, relative to its greatest value.
 fn differences(one: &[Vec<f64>; 3], other: &[Vec<f64>; 3]) -> [f64; 3] {
     [0, 1, 2].map(|force| {
-        let (a, b) = (&one[force], &other[force]);
-        assert_eq!((a.len(), b.len()), (9, 9));
-        let scale = a.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-        assert!(scale > 0.0);
-        a.iter().zip(b).map(|(a, b)| (a - b).abs() / scale).fold(0.0, f64::max)
+        assert!(one[force].len() == 9 && one[force].iter().any(|value| *value != 0.0));
+        compare::difference(&one[force], &other[force])
     })
 }
 
@@ -140,7 +111,7 @@ fn nodes_on_sampling_points_have_the_file_s_numbers() {
 /// A file that is not there is an error of files, and says who wants it.
 #[test]
 fn a_missing_file_is_named() {
-    let text = SCENE.to_owned() + "profile = \"sampled\"\nfile = \"none.txt\"\nextend = \"periodic\"\n";
+    let text = SCENE.clone() + "profile = \"sampled\"\nfile = \"none.txt\"\nextend = \"periodic\"\n";
     let file = Path::new("some/dir/scene.toml");
     let scene = read(&text, &Source { file: file.to_owned(), overrides: vec![] }).unwrap();
     let error = elevations(&scene, file).unwrap_err();
@@ -158,7 +129,7 @@ fn a_tolerance_bounds_the_added_compliance() {
         for depth in [0.1, 1.0, 10.0] {
             let set = [format!("material.poisson_ratio={ratio}"), format!("layer.depth={depth}")];
             let file = Path::new("scene.toml").to_owned();
-            let scene = read(&(SCENE.to_owned() + HARMONIC), &Source { file, overrides: set.to_vec() }).unwrap();
+            let scene = read(&(SCENE.clone() + HARMONIC), &Source { file, overrides: set.to_vec() }).unwrap();
             let penalty = match scene.contact.penalty {
                 Some(Penalty::Stiffness(stiffness)) => stiffness,
                 other => panic!("{other:?}"),

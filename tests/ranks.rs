@@ -4,6 +4,7 @@
 
 mod common;
 
+use common::compare::difference;
 use common::program::{Outcome, Run};
 
 const SLIDING: &str = include_str!("scenes/sliding.toml");
@@ -68,14 +69,6 @@ fn elastic() -> Run {
         )
         .replace("sides = \"periodic\"", "sides = \"fixed\"");
     monolithic(&scene).set("layer.cells=[20,12]").set("output.bulk_at=[\"indent\"]")
-}
-
-/// The largest difference of two fields over the largest value of the first.
-fn difference(a: &[f64], b: &[f64]) -> f64 {
-    assert_eq!(a.len(), b.len());
-    let largest = a.iter().fold(0.0f64, |most, value| most.max(value.abs()));
-    let apart = a.iter().zip(b).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
-    if apart == 0.0 { 0.0 } else { apart / largest }
 }
 
 /// Asserts that two runs agree in everything they wrote, to `tolerance` of the largest value of each field. What should

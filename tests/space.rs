@@ -3,64 +3,20 @@
 
 mod common;
 
-use common::program::{Outcome, Run, ends_with, program};
+use common::compare::difference;
+use common::program::{Outcome, Run, ends_with, program, solved};
+use common::scene::{COSINE, DRAG, TWO_ARMS, Text, WAVE, coulomb, layer, paraboloid, regularised};
 
 /// A cosine pressed beyond full contact of its middle, slid, and lifted again.
-const WAVE: &str = r#"
-[layer]
-width = 1.0
-depth = 0.7
-cells = [20, 8]
-grading = 2.0
-sides = "periodic"
-[material]
-shear_modulus = 568.498
-poisson_ratio = 0.3
-arms = [ { weight = 0.3, time = 0.2 }, { weight = 0.4, time = 2.0 } ]
-poisson_rule = "constant_ratio"
-[indenter]
-profile = "harmonic"
-amplitude = 5e-4
-wavelength = 1.0
-[contact]
-[friction]
-law = "coulomb"
-coefficient = 0.3
-[[phase]]
-name = "indent"
-duration = 1.0
-steps = 4
-approach = 1e-3
-[[phase]]
-name = "slide"
-velocity = 0.1
-distance = 0.4
-steps = 6
-[[phase]]
-name = "lift"
-duration = 1.0
-steps = 3
-approach = -1e-4
-[solver]
-tolerance = 1e-12
-[output]
-bulk_at = ["slide"]
-"#;
+static SCENE: Text = Text::new(|| {
+    let layer = layer("1.0", "0.7", "[20, 8]") + "grading = 2.0\n";
+    let rest = "[solver]\ntolerance = 1e-12\n[output]\nbulk_at = [\"slide\"]\n";
+    [&layer, TWO_ARMS, COSINE, &coulomb("0.3"), WAVE, rest].concat()
+});
 
 /// The same in space: of a width along y of 0.3 m.
 const ACROSS: f64 = 0.3;
 const IN_SPACE: [&str; 2] = ["layer.width=[1.0,0.3]", "layer.cells=[20,4,8]"];
-
-/// The largest difference over the largest value.
-fn difference(a: &[f64], b: &[f64]) -> f64 {
-    assert_eq!(a.len(), b.len());
-    let largest = a.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    a.iter().zip(b).fold(0.0_f64, |most, (x, y)| most.max((x - y).abs())) / largest
-}
-
-fn solved(scene: &str, changes: &[&str]) -> Outcome {
-    changes.iter().fold(Run::new(scene), |run, change| run.set(*change)).done()
-}
 
 /// A profile that does not depend on y gives the histories of the plane, times the width, to 1e-9: for every law, rule and
 /// memory, exact laws and penalties, nodes and Gauss points, either strategy, sides of any kind along x and no traction on rollers
@@ -88,13 +44,13 @@ fn a_profile_without_y_is_the_plane() {
         &[PENALTY, TANH, MONOLITHIC, LOOSER, BULK, "contact.quadrature=gauss"],
     ];
     for case in cases {
-        let plane = solved(WAVE, case);
+        let plane = solved(&SCENE, case);
         let mut changes = [case, &IN_SPACE].concat();
         // Along y the body is held as the plane is.
         let sides = case.iter().find_map(|change| change.strip_prefix("layer.sides="));
         let both = sides.map(|sides| format!("layer.sides=[\"{sides}\",\"roller\"]"));
         changes.extend(both.as_deref());
-        let space = solved(WAVE, &changes);
+        let space = solved(&SCENE, &changes);
         for column in ["normal_force", "tangential_force", "hysteretic_force", "contact_fraction", "stick_fraction"] {
             let width = if column.ends_with("force") { ACROSS } else { 1.0 };
             let flat: Vec<f64> = plane.history(column).iter().map(|value| value * width).collect();
@@ -119,40 +75,10 @@ fn a_profile_without_y_is_the_plane() {
 }
 
 /// A sphere pressed into a layer and dragged obliquely.
-const SPHERE: &str = r#"
-[layer]
-width = [1.0, 1.0]
-depth = 0.5
-cells = [12, 12, 6]
-sides = "periodic"
-[material]
-shear_modulus = 568.498
-poisson_ratio = 0.3
-arms = [ { weight = 0.3, time = 0.2 }, { weight = 0.4, time = 2.0 } ]
-poisson_rule = "constant_ratio"
-[indenter]
-profile = "paraboloid"
-radius = 2.0
-centre = [0.5, 0.5]
-[contact]
-penalty = 1e5
-[friction]
-law = "coulomb_tanh"
-coefficient = 0.3
-regularisation = 1e-3
-[[phase]]
-name = "press"
-duration = 1.0
-steps = 4
-approach = 0.03
-[[phase]]
-name = "drag"
-velocity = [0.1, 0.05]
-distance = 0.2
-steps = 5
-[solver]
-tolerance = 1e-11
-"#;
+static SPHERE: Text = Text::new(|| {
+    let (layer, paraboloid) = (layer("[1.0, 1.0]", "0.5", "[12, 12, 6]"), paraboloid("[0.5, 0.5]"));
+    [&layer, TWO_ARMS, &paraboloid, &regularised("1e5", "0.3"), DRAG, "[solver]\ntolerance = 1e-11\n"].concat()
+});
 
 /// Both strategies solve the same equations: forces, energies and fields agree to 1e-8, for both rules, on
 /// periodic and on free sides, at nodes and at Gauss points.
@@ -166,9 +92,9 @@ fn condensed_is_the_same_discrete_solution_in_space() {
         &["contact.quadrature=gauss", "layer.sides=roller"],
     ];
     for case in cases {
-        let face = solved(SPHERE, case);
+        let face = solved(&SPHERE, case);
         for ranks in [1, 3] {
-            let run = Run::new(SPHERE).set("solver.strategy=monolithic").ranks(ranks);
+            let run = Run::new(&SPHERE).set("solver.strategy=monolithic").ranks(ranks);
             let whole = case.iter().fold(run, |run, change| run.set(*change)).done();
             for column in ["normal_force", "tangential_force", "hysteretic_force", "energy/stored"] {
                 let apart = difference(&whole.history(column), &face.history(column));
@@ -189,7 +115,7 @@ fn condensed_is_the_same_discrete_solution_in_space() {
 #[test]
 fn bodies_beyond_the_memory_are_refused() {
     for command in ["check", "run"] {
-        let run = Run::new(SPHERE);
+        let run = Run::new(&SPHERE);
         let large = ["--set", "layer.sides=free", "--set", "layer.cells=[200,200,60]"];
         let mut program = program(1);
         program.current_dir(run.directory()).args([command, "scene.toml"]).args(large);
@@ -205,7 +131,7 @@ fn x_and_y_are_alike() {
     let exact = ["contact={}", "friction={ law = \"coulomb\", coefficient = 0.3 }", "solver.tolerance=1e-12"];
     let along = |direction: &str| {
         let velocity = format!("phase.drag.velocity={direction}");
-        solved(SPHERE, &[&exact[..], &[&velocity]].concat())
+        solved(&SPHERE, &[&exact[..], &[&velocity]].concat())
     };
     let (x, y) = (along("[0.1,0.0]"), along("[0.0,0.1]"));
     assert!(difference(&x.history("normal_force"), &y.history("normal_force")) < 1e-9);
@@ -229,7 +155,7 @@ fn friction_is_along_the_slip() {
         "phase.press.approach=1e-3",
         "phase.drag.steps=20",
     ];
-    let run = solved(SPHERE, &changes);
+    let run = solved(&SPHERE, &changes);
     let [x, y] = [0, 1].map(|direction| run.results().history_along("tangential_force", direction).unwrap());
     let ([x, y], n) = ([x, y].map(|q| *q.last().unwrap()), run.last("normal_force"));
     assert_eq!(run.last("contact_fraction"), 1.0);
@@ -268,7 +194,7 @@ fn ranks_agree_in_space() {
     let rough = "indenter={ profile = \"rough\", hurst = 0.8, rms_slope = 0.05, shortest = 0.2, longest = 0.5, period = 1.0, seed = 3 }";
     for changes in [&["solver.tolerance=1e-12"][..], &[rough, "contact={}", "solver.tolerance=1e-12"]] {
         let [one, three] = [1, 3]
-            .map(|ranks| changes.iter().fold(Run::new(SPHERE).ranks(ranks), |run, change| run.set(*change)).done());
+            .map(|ranks| changes.iter().fold(Run::new(&SPHERE).ranks(ranks), |run, change| run.set(*change)).done());
         for column in ["normal_force", "tangential_force", "energy/imbalance"] {
             assert_eq!(one.history(column), three.history(column), "{column}");
         }
@@ -295,8 +221,8 @@ fn pressures_alone_are_what_newton_finds() {
         &["layer.cells=[640,4]", ROUGH],
     ];
     let text =
-        WAVE.replace("[friction]\nlaw = \"coulomb\"\ncoefficient = 0.3\n", "").replace("bulk_at = [\"slide\"]", "");
-    let newton = WAVE.replace("coefficient = 0.3", "coefficient = 0.0").replace("bulk_at = [\"slide\"]", "");
+        SCENE.replace("[friction]\nlaw = \"coulomb\"\ncoefficient = 0.3\n", "").replace("bulk_at = [\"slide\"]", "");
+    let newton = SCENE.replace("coefficient = 0.3", "coefficient = 0.0").replace("bulk_at = [\"slide\"]", "");
     for case in cases {
         let (alone, newton) = (solved(&text, case), solved(&newton, case));
         for name in ["normal_force", "contact_fraction", "energy/stored"] {

@@ -6,6 +6,7 @@ mod common;
 use std::f64::consts::TAU;
 use std::path::Path;
 
+use common::compare::difference;
 use common::mpi::Case;
 use mpi::topology::SimpleCommunicator;
 use mpjr::composition;
@@ -46,13 +47,6 @@ fn off(found: f64, exact: f64) -> f64 {
     (found / exact - 1.0).abs()
 }
 
-/// The largest difference over the largest value.
-fn apart(a: &[f64], b: &[f64]) -> f64 {
-    assert_eq!(a.len(), b.len());
-    let largest = b.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    a.iter().zip(b).fold(0.0_f64, |most, (x, y)| most.max((x - y).abs())) / largest
-}
-
 /// Where nothing depends on y, states of the plane, node by node to 1e-9: both rules, with an approach or a force held, with a
 /// coefficient that falls with the pressure, at velocities from rest to the glassy end.
 fn the_same_for_every_y_is_the_plane() {
@@ -81,13 +75,13 @@ fn the_same_for_every_y_is_the_plane() {
             assert!(found.iter().all(|off| *off < 1e-9), "{changes:?} v {}: {found:?}", flat.velocity);
             assert!(solid.across.iter().all(|force| force.abs() < 1e-12 * n), "{:?}", solid.across);
             let power: Vec<f64> = solid.arm_dissipation.iter().map(|power| power / 0.3).collect();
-            assert!(apart(&power, &flat.arm_dissipation) < 1e-7);
+            assert!(difference(&power, &flat.arm_dissipation) < 1e-7);
             let every = |values: &[f64]| values.iter().flat_map(|value| [*value; 4]).collect::<Vec<f64>>();
-            assert!(apart(&solid.pressure, &every(&flat.pressure)) < 1e-9, "{changes:?} v {}", flat.velocity);
-            assert!(apart(&solid.gap, &every(&flat.gap)) < 1e-9);
+            assert!(difference(&solid.pressure, &every(&flat.pressure)) < 1e-9, "{changes:?} v {}", flat.velocity);
+            assert!(difference(&solid.gap, &every(&flat.gap)) < 1e-9);
             let [along, across] =
                 [0, 1].map(|axis| solid.shear.iter().skip(axis).step_by(2).copied().collect::<Vec<f64>>());
-            assert!(apart(&along, &every(&flat.shear)) < 1e-9 && across.iter().all(|q| *q == 0.0));
+            assert!(difference(&along, &every(&flat.shear)) < 1e-9 && across.iter().all(|q| *q == 0.0));
         }
     }
 }

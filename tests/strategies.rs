@@ -4,58 +4,17 @@
 
 mod common;
 
+use common::compare::difference;
 use common::program::{Outcome, Run};
+use common::scene::{COSINE, TWO_ARMS, Text, WAVE, layer, regularised};
 
 /// A layer pressed beyond full contact of its middle, slid, and lifted again.
-const SCENE: &str = r#"
-[layer]
-width = 1.0
-depth = 0.7
-cells = [20, 12]
-grading = 2.0
-sides = "periodic"
-[material]
-shear_modulus = 568.498
-poisson_ratio = 0.3
-arms = [ { weight = 0.3, time = 0.2 }, { weight = 0.4, time = 2.0 } ]
-poisson_rule = "constant_ratio"
-[indenter]
-profile = "harmonic"
-amplitude = 5e-4
-wavelength = 1.0
-[contact]
-penalty = 1e6
-[friction]
-law = "coulomb_tanh"
-coefficient = 0.3
-regularisation = 1e-3
-[[phase]]
-name = "indent"
-duration = 1.0
-steps = 5
-approach = 1e-3
-[[phase]]
-name = "slide"
-velocity = 0.1
-distance = 0.5
-steps = 10
-[[phase]]
-name = "lift"
-duration = 1.0
-steps = 4
-approach = -1e-4
-[solver]
-tolerance = 1e-11
-[output]
-bulk_at = ["indent", 2.345]
-"#;
-
-/// The largest difference over the largest value.
-fn difference(a: &[f64], b: &[f64]) -> f64 {
-    assert_eq!(a.len(), b.len());
-    let largest = a.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    a.iter().zip(b).fold(0.0_f64, |most, (x, y)| most.max((x - y).abs())) / largest
-}
+static SCENE: Text = Text::new(|| {
+    let layer = layer("1.0", "0.7", "[20, 12]") + "grading = 2.0\n";
+    let phases = WAVE.replace("distance = 0.4\nsteps = 6", "distance = 0.5\nsteps = 10");
+    let rest = "[solver]\ntolerance = 1e-11\n[output]\nbulk_at = [\"indent\", 2.345]\n";
+    [&layer, TWO_ARMS, COSINE, &regularised("1e6", "0.3"), &phases, rest].concat()
+});
 
 #[test]
 fn condensed_is_the_same_discrete_solution() {
@@ -85,7 +44,7 @@ fn condensed_is_the_same_discrete_solution() {
         let case: Vec<String> =
             case.iter().map(|change| change.replace("friction=none", "friction.coefficient=0.0")).collect();
         let solved = ["monolithic", "condensed"].map(|strategy| {
-            let run = Run::new(SCENE).set(format!("solver.strategy={strategy}"));
+            let run = Run::new(&SCENE).set(format!("solver.strategy={strategy}"));
             case.iter().fold(run, |run, change| run.set(change)).done()
         });
         let [whole, face] = solved.each_ref().map(Outcome::results);

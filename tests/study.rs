@@ -8,6 +8,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use common::program::{MPJR, Run, ends_with, errors, output_of, program};
+use common::scene::{COSINE, Text, coulomb, elastic, layer, phase};
 use mpjr::output::HistoryRow;
 use mpjr::study::Difference;
 use toml::{Table, Value};
@@ -81,36 +82,11 @@ fn the_order_of_the_penalty() {
 }
 
 /// Partial slip under Coulomb's law itself without penetration.
-const EXACT: &str = r#"
-[layer]
-width = 1.0
-depth = 0.7
-cells = [64, 16]
-sides = "periodic"
-[material]
-shear_modulus = 300.0
-poisson_ratio = 0.3
-[indenter]
-profile = "harmonic"
-amplitude = 5e-4
-wavelength = 1.0
-[contact]
-[friction]
-law = "coulomb"
-coefficient = 0.3
-[[phase]]
-name = "press"
-duration = 1.0
-steps = 4
-approach = 5e-4
-[[phase]]
-name = "forth"
-duration = 1.0
-steps = 20
-velocity = 1e-4
-[solver]
-tolerance = 1e-11
-"#;
+static EXACT: Text = Text::new(|| {
+    let press = phase("press", 4) + "duration = 1.0\napproach = 5e-4\n";
+    let forth = phase("forth", 20) + "duration = 1.0\nvelocity = 1e-4\n[solver]\ntolerance = 1e-11\n";
+    layer("1.0", "0.7", "[64, 16]") + &elastic("300.0", "0.3") + COSINE + &coulomb("0.3") + &press + &forth
+});
 
 /// Penalty, elastic slip and regularisation come to the exact laws, which the scene has, at first order: each rung is ten times closer than
 /// the one before (the order that is told, from the last two of them). The error of the last one, against the exact laws: 2.0e-4 at
@@ -120,7 +96,7 @@ tolerance = 1e-11
 fn softer_laws_come_to_the_exact_ones() {
     let directory = tempfile::tempdir().unwrap();
     let scene = directory.path().join("exact.toml");
-    std::fs::write(&scene, EXACT).unwrap();
+    std::fs::write(&scene, &**EXACT).unwrap();
     for (vary, bound) in [
         ("contact.penalty=1e4,1e5,1e6,1e7", 2.2e-4),
         ("friction.elastic_slip=1e-5,1e-6,1e-7,1e-8", 8e-5),

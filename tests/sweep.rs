@@ -8,42 +8,16 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use common::program::{assert_same, ends_with, errors, names, output_of, program};
+use common::scene::{COSINE, Text, elastic, layer, phase, regularised};
 use mpjr::output::reader::Results;
 
-const SCENE: &str = r#"
-title = "base"
-[layer]
-width = 1.0
-depth = 0.5
-cells = [16, 6]
-sides = "periodic"
-[material]
-shear_modulus = 500.0
-poisson_ratio = 0.3
-[indenter]
-profile = "harmonic"
-amplitude = 5e-4
-wavelength = 1.0
-[contact]
-penalty = 1e6
-[friction]
-law = "coulomb_tanh"
-coefficient = 0.2
-regularisation = 1e-3
-[[phase]]
-name = "indent"
-duration = 2.0
-steps = 10
-approach = 1e-3
-[[phase]]
-name = "slide"
-velocity = 0.1
-distance = 0.2
-steps = 12
-[output]
-interface_every = 2
-bulk_at = ["indent", "slide"]
-"#;
+static SCENE: Text = Text::new(|| {
+    let indent = phase("indent", 10) + "duration = 2.0\napproach = 1e-3\n";
+    let slide = phase("slide", 12) + "velocity = 0.1\ndistance = 0.2\n";
+    let output = "[output]\ninterface_every = 2\nbulk_at = [\"indent\", \"slide\"]\n";
+    let body = layer("1.0", "0.5", "[16, 6]") + &elastic("500.0", "0.3");
+    "title = \"base\"\n".to_owned() + &body + COSINE + &regularised("1e6", "0.2") + &indent + &slide + output
+});
 
 const SOFT: &str = "[material]\nyoung_modulus = 1000.0\npoisson_ratio = 0.2\n\
                     arms = [{ weight = 0.5, time = 0.3 }]\npoisson_rule = \"constant_ratio\"\n";
@@ -61,7 +35,7 @@ scene = "scene.toml"
 fn prepare(sweep: &str) -> (tempfile::TempDir, PathBuf) {
     let directory = tempfile::tempdir().unwrap();
     let put = |name: &str, text: &str| std::fs::write(directory.path().join(name), text).unwrap();
-    put("scene.toml", SCENE);
+    put("scene.toml", &SCENE);
     put("soft.toml", SOFT);
     put("hard.toml", &SOFT.replace("1000.0", "4000.0"));
     put("sweep.toml", sweep);

@@ -1,11 +1,13 @@
 //! Shared by the integration tests; each uses a part of it.
 #![allow(dead_code)]
 pub mod bad;
+pub mod compare;
 pub mod loads;
 pub mod mpi;
 pub mod msh;
 pub mod program;
 pub mod sample;
+pub mod scene;
 pub mod smallest;
 pub mod solid;
 

@@ -41,6 +41,11 @@ impl Run {
         Self { directory, arguments: vec!["run".into(), "scene.toml".into()], petsc: Vec::new(), ranks: 1 }
     }
 
+    /// With `--set` of each of the changes.
+    pub fn changed(scene: &str, changes: &[&str]) -> Self {
+        changes.iter().fold(Self::new(scene), |run, change| run.set(*change))
+    }
+
     /// Where it will run.
     pub fn directory(&self) -> PathBuf {
         self.directory.path().to_owned()
@@ -95,6 +100,18 @@ impl Run {
     }
 }
 
+/// What comes of a scene with `--set` of each of the changes; it must succeed.
+pub fn solved(scene: &str, changes: &[&str]) -> Outcome {
+    Run::changed(scene, changes).done()
+}
+
+/// What a scene writes that is run in a directory with its files; it must succeed.
+pub fn run_in(directory: &Path, scene: &str, ranks: usize) -> Results {
+    std::fs::write(directory.join("scene.toml"), scene).unwrap();
+    output_of(program(ranks).current_dir(directory).args(["run", "scene.toml", "-q"]));
+    Results::open(&directory.join("scene.h5")).unwrap()
+}
+
 impl Outcome {
     /// Of an output in a directory.
     pub fn new(output: Output, directory: TempDir) -> Self {
@@ -108,8 +125,13 @@ impl Outcome {
     }
 
     /// The file that the run wrote by default.
+    pub fn file(&self) -> PathBuf {
+        self.directory.path().join("scene.h5")
+    }
+
+    /// What is in it.
     pub fn results(&self) -> Results {
-        Results::open(&self.directory.path().join("scene.h5")).unwrap()
+        Results::open(&self.file()).unwrap()
     }
 
     /// A column of the history.
