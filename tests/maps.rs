@@ -63,7 +63,7 @@ fn a_map_of_a_formula_converges_to_it() {
         3e-4 * (1.0 - (2.0 * PI * x).cos()) + 1e-4 * (1.0 - phase.cos())
     };
     let body = BODY.replace("approach = 5e-4", "approach = 3e-3").replace("0.0537", "0.1388888888888889");
-    let exact = run(directory, &(SPACE.clone() + &body + &formula));
+    let exact = run(directory, &(SPACE.clone() + &body + formula));
     let error = |n: usize| {
         let at = |i: usize, j: usize| h(i as f64 / n as f64, 0.5 * j as f64 / n as f64);
         std::fs::write(directory.join("map.npy"), npy(n, n, at)).unwrap();

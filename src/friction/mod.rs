@@ -8,11 +8,13 @@
 mod coulomb;
 mod coulomb_tanh;
 mod elastic_slip;
+mod rebound;
 mod strength;
 
 pub use coulomb::Coulomb;
 pub use coulomb_tanh::CoulombTanh;
 pub use elastic_slip::ElasticSlip;
+pub use rebound::Rebound;
 pub use strength::{Bound, Coefficient, Lasting, Strength, TEMPERATURE, VARIABLES};
 
 /// What a point answers in: its pressure, its step and its past.

@@ -20,7 +20,7 @@ use nalgebra::SVector;
 
 use super::{Answer, Laws, Site};
 use crate::adhesion::{self, Met};
-use crate::friction::{Bound, Circumstances, Lasting, Law, Share, Strength};
+use crate::friction::{Bound, Circumstances, Law, Rebound};
 
 /// What holds the overlap of a point back.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,10 +59,7 @@ impl<const D: usize> Site<D> {
         let at = self.circumstances(borne.max(0.0), laws);
         let pulls = answer.gap > 0.0;
         answer.shear = match pulls {
-            true => {
-                let share = -borne / law.strength();
-                self.meet(&Across { law: friction, share, strength: law.strength() }, at, (shear, slip), &mut answer)
-            }
+            true => self.meet(&across(friction, borne, law.strength()), at, (shear, slip), &mut answer),
             false => self.meet(friction, at, (shear, slip), &mut answer),
         };
         // Friction knows the law's pressure.
@@ -82,47 +79,12 @@ pub(super) fn bears(friction: &dyn Law, pressure: f64) -> bool {
     pressure > 0.0 || friction.strength().bond() > 0.0
 }
 
-/// What a bond bears across a gap: that of a closed gap times sigma/sigma_0, so that a gap opens without a jump of the shear.
-#[derive(Debug)]
-struct Across<'a> {
-    law: &'a dyn Law,
-    /// sigma/sigma_0
-    share: f64,
-    /// sigma_0, Pa.
-    strength: f64,
-}
-
-impl Law for Across<'_> {
-    fn strength(&self) -> &Strength {
-        self.law.strength()
-    }
-
-    fn share(&self, at: Circumstances, slip: f64) -> Share {
-        self.law.share(at, slip)
-    }
-
-    fn sharpness(&self, dt: f64) -> f64 {
-        self.law.sharpness(dt)
-    }
-
-    fn sticks(&self, at: Circumstances, slip: f64) -> bool {
-        self.law.sticks(at, slip)
-    }
-
-    fn holds(&self) -> bool {
-        self.law.holds()
-    }
-
-    fn elastic(&self, slip: f64) -> f64 {
-        self.law.elastic(slip)
-    }
-
-    fn lasting(&self, slip: f64) -> Lasting {
-        self.law.lasting(slip)
-    }
-
-    fn bound(&self, at: Circumstances, slip: f64) -> Bound {
-        let Bound { value, .. } = self.law.bound(at, slip);
-        Bound { value: value * self.share, by_slip: 0.0, by_pressure: -value / self.strength }
-    }
+/// What a bond bears across a gap under a pull `borne` < 0, Pa, of a law whose strength is sigma_0, Pa: what a closed gap bears times
+/// sigma/sigma_0, so that a gap opens without a jump of the shear.
+fn across(friction: &dyn Law, borne: f64, strength: f64) -> impl Law {
+    let bound = move |at: Circumstances, slip: f64| {
+        let Bound { value, .. } = friction.bound(at, slip);
+        Bound { value: value * (-borne / strength), by_slip: 0.0, by_pressure: -value / strength }
+    };
+    Rebound { law: friction, bound }
 }

@@ -8,7 +8,7 @@
 use super::search::{Operator, Outcome, settle};
 use super::{Answer, Laws, Site, Sites};
 use crate::error::Result;
-use crate::friction::{Bound, Circumstances, Lasting, Law, Share, Strength};
+use crate::friction::{Circumstances, Lasting, Rebound};
 
 /// Newton iterations of each attempt.
 const EACH: usize = 25;
@@ -30,7 +30,9 @@ pub fn branches<const D: usize>(
     let temperature = sites.iter().map(|site| site.temperature).fold(0.0, f64::max);
     let at = Circumstances { pressure, dt: laws.dt, resolution: 0.0, slid, temperature };
     for rate in [0.0, law.strength().weakest(at)] {
-        let frozen = Frozen { law, rate };
+        // The strength is that of the rate, m/s, whatever a point slips.
+        let bound = |at: Circumstances, _| law.strength().at(at, Lasting { length: rate * at.dt, by_slip: 0.0 });
+        let frozen = Rebound { law, bound };
         let first = from.clone().under(sites, Laws { friction: Some(&frozen), ..laws });
         let first = settle(sites, first, Laws { friction: Some(&frozen), ..laws }, operator, EACH)?;
         let found = settle(sites, first.under(sites, laws), laws, operator, EACH)?;
@@ -73,41 +75,4 @@ fn stays<const D: usize>(sites: &Sites<D>, at: &Outcome<D>, laws: Laws<'_>) -> b
     let slipping = sites.iter().zip(&at.answers).filter(|(_, answer)| answer.active && !answer.sticks);
     let [risen] = sites.team().sum([slipping.map(rise).sum::<f64>()]);
     inert || risen > 0.0
-}
-
-/// A law whose strength is that of a rate, m/s, whatever a point slips.
-#[derive(Debug)]
-struct Frozen<'a> {
-    law: &'a dyn Law,
-    rate: f64,
-}
-
-impl Law for Frozen<'_> {
-    fn strength(&self) -> &Strength {
-        self.law.strength()
-    }
-
-    fn bound(&self, at: Circumstances, _slip: f64) -> Bound {
-        self.law.strength().at(at, Lasting { length: self.rate * at.dt, by_slip: 0.0 })
-    }
-
-    fn share(&self, at: Circumstances, slip: f64) -> Share {
-        self.law.share(at, slip)
-    }
-
-    fn sharpness(&self, dt: f64) -> f64 {
-        self.law.sharpness(dt)
-    }
-
-    fn sticks(&self, at: Circumstances, slip: f64) -> bool {
-        self.law.sticks(at, slip)
-    }
-
-    fn holds(&self) -> bool {
-        self.law.holds()
-    }
-
-    fn elastic(&self, slip: f64) -> f64 {
-        self.law.elastic(slip)
-    }
 }
