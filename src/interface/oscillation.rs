@@ -30,7 +30,8 @@ pub fn oscillation<const D: usize>(
     let touches = |node: usize| tractions[node][D - 1] > 0.0;
     let contact: Vec<f64> = tractions[..counted].iter().filter(|t| t[D - 1] > 0.0).map(|t| t.norm_squared()).collect();
     let (mut turned, mut pairs) = (0.0, 0_u32);
-    for (axis, node) in (0..grid.axes.len()).flat_map(|axis| (0..counted).map(move |node| (axis, node))) {
+    let touching = |axis: usize| (0..counted).filter(|&node| touches(node)).map(move |node| (axis, node));
+    for (axis, node) in (0..grid.axes.len()).flat_map(touching) {
         let Some(four) = four(grid, node, axis).filter(|four| four.iter().all(|&node| touches(node))) else { continue };
         let lengths = [0, 1, 2].map(|i| distance(face, grid, axis, [four[i], four[i + 1]]));
         let slopes = [0, 1, 2].map(|i| (tractions[four[i + 1]] - tractions[four[i]]) / lengths[i]);

@@ -38,13 +38,13 @@ impl<const D: usize> Site<D> {
         (law, trial, overlap): (&dyn adhesion::Law, f64, f64),
         (pressure, shear, slip): (f64, SVector<f64, D>, SVector<f64, D>),
         laws: Laws<'_>,
-        mut answer: Answer<D>,
-    ) -> Answer<D> {
+        answer: &mut Answer<D>,
+    ) {
         let rho = self.moduli.normal;
         let Damping { stiffness, overlap: held } = self.damping.unwrap_or(Damping { stiffness: 0.0, overlap });
         let met = adhesion::meet(law, laws.penalty, trial + stiffness * held, rho + stiffness);
         if self.damping.is_none() && -met.overlap >= law.reach() {
-            return answer;
+            return;
         }
         answer.active = true;
         answer.gap = (-met.overlap).max(0.0);
@@ -54,13 +54,13 @@ impl<const D: usize> Site<D> {
         answer.stiff = stiff + soft * (stiffness / (rho + stiffness));
         let Some(friction) = laws.friction.filter(|friction| bears(*friction, borne)) else {
             answer.excess = shear - self.normal * (pressure - answer.pressure);
-            return answer;
+            return;
         };
         let at = self.circumstances(borne.max(0.0), laws);
         let pulls = answer.gap > 0.0;
         answer.shear = match pulls {
-            true => self.meet(&across(friction, borne, law.strength()), at, (shear, slip), &mut answer),
-            false => self.meet(friction, at, (shear, slip), &mut answer),
+            true => self.meet(&across(friction, borne, law.strength()), at, (shear, slip), answer),
+            false => self.meet(friction, at, (shear, slip), answer),
         };
         // Friction knows the law's pressure.
         answer.drag *= match self.damping {
@@ -70,7 +70,6 @@ impl<const D: usize> Site<D> {
             Some(_) => stiff / answer.stiff,
         };
         answer.excess = (shear - answer.shear) - self.normal * (pressure - answer.pressure);
-        answer
     }
 }
 

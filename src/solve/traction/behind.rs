@@ -24,6 +24,9 @@ pub struct Behind<'a, const D: usize> {
 }
 
 impl<const D: usize> Behind<'_, D> {
+    /// Whether there is more than one direction along the face: see [`Self::give`].
+    const MAY_GIVE: bool = D > 2;
+
     /// The forces of tractions on the nodes, N/m; what is held takes none.
     pub fn forces(&self, tractions: &[SVector<f64, D>]) -> Vec<f64> {
         let points = self.interface.points();
@@ -77,7 +80,7 @@ impl<const D: usize> Behind<'_, D> {
 
     /// What displacements of the nodes are at the points under tractions, with what gives way where one direction is held.
     pub fn motions(&self, u: &[f64], tractions: &[SVector<f64, D>]) -> Vec<SVector<f64, D>> {
-        if self.compliance.waves().is_some() {
+        if !Self::MAY_GIVE || self.compliance.waves().is_some() {
             return self.at_points(u);
         }
         let given = |(i, (motion, t)): (usize, (SVector<f64, D>, &SVector<f64, D>))| match self.give(i) {
@@ -92,6 +95,9 @@ impl<const D: usize> Behind<'_, D> {
     /// compliance, m/Pa by component: the share is none unless the indenter slips that way.
     fn give(&self, i: usize) -> Option<SVector<f64, D>> {
         const TRIFLE: f64 = 1e-6;
+        if !Self::MAY_GIVE {
+            return None;
+        }
         let [(node, _)] = self.interface.points().shares(i) else { return None };
         let held = |component: usize| self.compliance.is_held(D * node + component);
         let free = (0..D - 1).find(|&component| !held(component))?;

@@ -171,7 +171,8 @@ impl<const D: usize> Site<D> {
         let mut answer = Answer::open(*traction, slip);
         answer.noise = (f64::EPSILON * (pressure.abs() + rho * self.lengths[0])).powi(2);
         if let Some(law) = laws.adhesion {
-            return self.adhere((law, trial, overlap), (pressure, shear, slip), laws, answer);
+            self.adhere((law, trial, overlap), (pressure, shear, slip), laws, &mut answer);
+            return answer;
         }
         if trial <= 0.0 {
             return answer;
