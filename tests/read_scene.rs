@@ -51,7 +51,7 @@ fn the_paper_s_scene_is_read_as_written() {
     assert_eq!(scene.materials[0].arms, [Arm { weight: 0.579, time: 0.817 }]);
     assert_eq!(scene.materials[0].poisson_rule, Some(PoissonRule::ConstantRatio));
     assert_eq!(scene.indenter, Indenter::Harmonic { amplitude: 5e-4, wavelength: 1.0 });
-    assert_eq!(scene.friction, Some(Friction::constant(Law::CoulombElasticSlip { elastic_slip: 1e-8 }, 0.2)));
+    assert_eq!(scene.friction, Some(Friction::constant(Law::elastic_slip(1e-8), 0.2)));
     assert_eq!(scene.phases[0].approach, Some(1e-3));
     assert_eq!(scene.phases[1].duration, 2.0 / 0.02154);
     assert_eq!(scene.duration(), 10.0 + 2.0 / 0.02154);
@@ -272,15 +272,14 @@ impl Random {
         let file = self.of(&["a.txt", "../é \"b\"/c.csv", "/abs/d"]).to_owned();
         let period = self.of(&[None, Some(wavelength)]);
         let [coefficient, small] = [10.0 * self.unit(), 1e-12 * self.positive()];
-        let law =
-            self.of(&[Law::CoulombTanh { regularisation: small }, Law::CoulombElasticSlip { elastic_slip: small }]);
+        let law = self.of(&[Law::tanh(small), Law::elastic_slip(small)]);
         let quadrature = self.of(&[Quadrature::Nodal, Quadrature::Gauss]);
         let adaptive = phases.iter().any(|phase| matches!(phase.stepping, Stepping::Tolerance(_)));
         // Exact laws are for nodes.
         let penalty = Some(Penalty::Stiffness(1e200 * self.positive()));
         let strategy = self.of(&[Strategy::Auto, Strategy::Condensed, Strategy::Monolithic]);
         let exact = quadrature == Quadrature::Nodal && strategy != Strategy::Monolithic;
-        let law = if exact && self.below(3) == 0 { Law::Coulomb } else { law };
+        let law = if exact && self.below(3) == 0 { Law::exact() } else { law };
         let formula = Coefficient::Formula("0.1 + table(\"é.csv\", v)*exp(-s)".to_owned());
         let friction = Friction {
             law,

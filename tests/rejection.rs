@@ -171,7 +171,7 @@ fn profile_fails(world: &SimpleCommunicator, scene: &Scene) {
 /// Under a sharp regularisation Newton's method is allowed the fewest iterations with which it comes through, so that
 /// some steps fail half way; then all steps that were accepted are planned in a run that may take as many as it likes.
 fn newton_fails(world: &SimpleCommunicator, scene: &Scene) {
-    let friction = Some(scene::Friction::constant(scene::Law::CoulombTanh { regularisation: 1e-5 }, 0.2));
+    let friction = Some(scene::Friction::constant(scene::Law::tanh(1e-5), 0.2));
     let scene = &Scene { friction, ..scene.clone() };
     let met = (2..8).find_map(|most| {
         let mut problem = composition::build(world, scene, Path::new("scene.toml")).unwrap();

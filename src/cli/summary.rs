@@ -10,8 +10,8 @@ use crate::energy::{Energy, MountEnergy};
 use crate::output::Status;
 use crate::petsc;
 use crate::scene::{
-    Adhesion, AdhesionLaw, Bond, Coefficient, Friction, Heat, Law, Penalty, PoissonRule, Quadrature, Scene, Sides,
-    Span, Strategy, Wear, WearLaw, Wearing, added_compliance, shortest_step,
+    Adhesion, AdhesionLaw, Bond, Coefficient, Friction, Heat, Penalty, PoissonRule, Quadrature, Scene, Sides, Span,
+    Strategy, Wear, WearLaw, Wearing, added_compliance, shortest_step,
 };
 use crate::solve::{Counts, Work};
 
@@ -95,11 +95,7 @@ fn friction_law(friction: &Friction) -> String {
         Coefficient::Formula(formula) => formula.clone(),
     };
     let limit = friction.shear_limit.map_or(String::new(), |limit| format!(", at most {limit} Pa"));
-    let turns = match friction.law {
-        Law::CoulombTanh { regularisation } => format!("regularised by tanh over {regularisation} m/s"),
-        Law::CoulombElasticSlip { elastic_slip } => format!("sticking up to an elastic slip of {elastic_slip} m"),
-        Law::Coulomb => "Coulomb's law itself".to_owned(),
-    };
+    let turns = (friction.law.kind.told)(friction.law.softness);
     format!("friction: f = {coefficient}{limit}, {turns}")
 }
 

@@ -6,7 +6,7 @@ use super::body::Materials;
 use crate::adhesion::{self, Bilinear, Dugdale, Exponential};
 use crate::element::mpjr::Quadrature;
 use crate::error::{Error, Result};
-use crate::friction::{Coefficient, Coulomb, CoulombTanh, ElasticSlip, Law, Strength};
+use crate::friction::{Coefficient, Law, Strength};
 use crate::loading::{DIRECTIONS, Mount};
 use crate::scene::{self, Scene};
 use crate::solve::{Convection, Heat, Medium};
@@ -45,11 +45,8 @@ pub(super) fn friction(friction: &scene::Friction, bond: Option<scene::Bond>) ->
         Some(scene::Bond::None) | None => 0.0,
     };
     let strength = Strength::new(coefficient, friction.shear_limit).bonded(bond);
-    Ok(match friction.law {
-        scene::Law::CoulombTanh { regularisation } => Box::new(CoulombTanh { strength, regularisation }),
-        scene::Law::CoulombElasticSlip { elastic_slip } => Box::new(ElasticSlip { strength, elastic_slip }),
-        scene::Law::Coulomb => Box::new(Coulomb { strength }),
-    })
+    let scene::Law { kind, softness } = friction.law;
+    Ok((kind.make)(strength, softness))
 }
 
 pub(super) fn adhering(adhesion: scene::Adhesion) -> Box<dyn adhesion::Law> {

@@ -1,6 +1,13 @@
 //! Coulomb's law itself.
 
-use super::{Circumstances, Law, Share, Strength};
+use super::{Circumstances, Kind, Law, Share, Strength};
+
+pub(super) const KIND: Kind = Kind {
+    name: "coulomb",
+    softness: None,
+    make: |strength, _| Box::new(Coulomb { strength }),
+    told: |_| "Coulomb's law itself".to_owned(),
+};
 
 /// |q| = B where the point slips; where it sticks, what it takes, up to B at no rate. Nothing is regularised: no creep, no
 /// elastic slip.

@@ -1,6 +1,13 @@
 //! Coulomb's law regularised by the slip rate.
 
-use super::{Circumstances, Law, Share, Strength};
+use super::{Circumstances, Kind, Law, Share, Softness, Strength};
+
+pub(super) const KIND: Kind = Kind {
+    name: "coulomb_tanh",
+    softness: Some(Softness { key: "regularisation", what: "a positive slip rate in m/s", is_rate: true }),
+    make: |strength, regularisation| Box::new(CoulombTanh { strength, regularisation }),
+    told: |regularisation| format!("regularised by tanh over {regularisation} m/s"),
+};
 
 /// |q| = B tanh(m/(eps dt)), Bonari and Paggi (2020), Eq. (4): sticks by creeping at a slip rate below eps.
 #[derive(Debug, Clone)]

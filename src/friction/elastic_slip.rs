@@ -1,6 +1,13 @@
 //! Coulomb's law regularised by the slip.
 
-use super::{Circumstances, Lasting, Law, Share, Strength};
+use super::{Circumstances, Kind, Lasting, Law, Share, Softness, Strength};
+
+pub(super) const KIND: Kind = Kind {
+    name: "coulomb_elastic_slip",
+    softness: Some(Softness { key: "elastic_slip", what: "a positive length in m", is_rate: false }),
+    make: |strength, elastic_slip| Box::new(ElasticSlip { strength, elastic_slip }),
+    told: |elastic_slip| format!("sticking up to an elastic slip of {elastic_slip} m"),
+};
 
 /// Coulomb's law with an elastic part e of the slip, at most gamma long:
 ///

@@ -3,17 +3,19 @@
 //! A point slips by a vector s over a step: what it slips in the step, and before that what the law still holds elastically.
 //! With m = |s| >= 0 a law gives |q|(m, p) = B phi, B what the point bears ([`Strength`]) and phi what share of it the slip calls
 //! up, from 0 to 1, which does not fall with m; B may. The traction is q = |q| s/m, whatever the dimension. A new law is a file with
-//! an `impl Law`.
+//! an `impl Law` and its [`Kind`], and a line in [`KINDS`].
 
 mod coulomb;
 mod coulomb_tanh;
 mod elastic_slip;
+mod kind;
 mod rebound;
 mod strength;
 
 pub use coulomb::Coulomb;
 pub use coulomb_tanh::CoulombTanh;
 pub use elastic_slip::ElasticSlip;
+pub use kind::{KINDS, Kind, Softness};
 pub use rebound::Rebound;
 pub use strength::{Bound, Coefficient, Lasting, Strength, TEMPERATURE, VARIABLES};
 

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use super::keys::tables::{COMPRESSIVE, IN_PLANE, IN_SPACE};
 use super::{
-    Arm, Body, Bond, Extend, Friction, Heat, Indenter, Law, Layer, Material, Memory, MeshFile, Motion, Phase,
-    Quadrature, Scene, Sides, Span, Stepping, Strategy, WearLaw, Wearing, When, keys,
+    Arm, Body, Bond, Extend, Friction, Heat, Indenter, Layer, Material, Memory, MeshFile, Motion, Phase, Quadrature,
+    Scene, Sides, Span, Stepping, Strategy, WearLaw, Wearing, When, keys,
 };
 use crate::error::{Error, Result};
 
@@ -384,7 +384,7 @@ fn exact_laws(scene: &Scene) -> Check {
         return fail("contact.penalty", reason);
     }
     match scene.friction.as_ref().map(|friction| friction.law) {
-        Some(Law::Coulomb) => {
+        Some(law) if law.is_exact() => {
             let laws = "\"coulomb_elastic_slip\" (an elastic_slip of 1e-3 times coefficient times approach leaves a thousandth) or \"coulomb_tanh\"";
             fail("friction.law", format!("must be {laws} here; {instead}"))
         }

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use serde::Serialize;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 
 use crate::expression::{Expression, Fault};
-use crate::friction::{TEMPERATURE, VARIABLES};
+use crate::friction::{KINDS, Kind, Softness, TEMPERATURE, VARIABLES};
 use crate::table::Curve;
 
 /// The friction law.
@@ -29,21 +30,12 @@ pub struct Friction {
 }
 
 /// How friction turns from stick to slip.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(tag = "law", rename_all = "snake_case")]
-pub enum Law {
-    /// q = f p tanh(slip_rate / regularisation), Eq. (4).
-    CoulombTanh {
-        /// m/s, > 0
-        regularisation: f64,
-    },
-    /// q = f p e/elastic_slip, e the elastic part of the slip, at most elastic_slip either way.
-    CoulombElasticSlip {
-        /// m, > 0
-        elastic_slip: f64,
-    },
-    /// q = f p where a point slips, and up to that where it sticks.
-    Coulomb,
+#[derive(Debug, Clone, Copy)]
+pub struct Law {
+    /// Which law.
+    pub kind: &'static Kind,
+    /// Its softness, > 0; of an exact law 0.
+    pub softness: f64,
 }
 
 /// The coefficient of friction.
@@ -54,6 +46,56 @@ pub enum Coefficient {
     Number(f64),
     /// Of v, m/s, p, Pa, s, m, and T, K.
     Formula(String),
+}
+
+impl Law {
+    /// q = f p where a point slips, and up to that where it sticks.
+    pub fn exact() -> Self {
+        Self { kind: KINDS[0], softness: 0.0 }
+    }
+
+    /// q = f p tanh(slip_rate / regularisation), Eq. (4), > 0, m/s.
+    pub fn tanh(regularisation: f64) -> Self {
+        Self { kind: KINDS[1], softness: regularisation }
+    }
+
+    /// q = f p e/elastic_slip, e the elastic part of the slip, at most elastic_slip (> 0, m) either way.
+    pub fn elastic_slip(elastic_slip: f64) -> Self {
+        Self { kind: KINDS[2], softness: elastic_slip }
+    }
+
+    /// Whether what sticks does not move.
+    pub fn is_exact(&self) -> bool {
+        self.kind.softness.is_none()
+    }
+
+    /// The slip rate that it is softened by, m/s; none where it is not by a rate.
+    pub fn rate(&self) -> Option<f64> {
+        self.kind.softness.as_ref().filter(|softness| softness.is_rate).map(|_| self.softness)
+    }
+
+    /// The slip that it is softened by, m; none where it is not by a slip.
+    pub fn slip(&self) -> Option<f64> {
+        self.kind.softness.as_ref().filter(|softness| !softness.is_rate).map(|_| self.softness)
+    }
+}
+
+impl PartialEq for Law {
+    fn eq(&self, other: &Self) -> bool {
+        self.kind.name == other.kind.name && self.softness == other.softness
+    }
+}
+
+/// As the keys of the table.
+impl Serialize for Law {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("law", self.kind.name)?;
+        if let Some(Softness { key, .. }) = self.kind.softness {
+            map.serialize_entry(key, &self.softness)?;
+        }
+        map.end()
+    }
 }
 
 impl Friction {

@@ -150,7 +150,7 @@ fn memory(scene: &Scene) -> Option<Ladder> {
 
 /// That of the scene is what the other one is held against. Exact laws have no other.
 fn quadrature(scene: &Scene) -> Option<Ladder> {
-    if Softness::ALL.iter().any(|softness| softness.is_none(scene)) {
+    if Softness::lacks(scene) {
         return None;
     }
     let words = match scene.contact.quadrature {

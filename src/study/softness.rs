@@ -1,59 +1,63 @@
 //! What keeps a law from being exact: the penalty, and what friction is regularised by.
 
-use crate::scene::{Law, Scene};
+use crate::friction::{KINDS, Kind};
+use crate::scene::Scene;
 
 /// A softness, which has an exact law for its limit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub enum Softness {
     /// Of the contact: a penalty.
     Penalty,
-    /// Of friction: a slip rate.
-    Regularisation,
-    /// Of friction: a slip.
-    ElasticSlip,
+    /// Of friction: what this law is softened by.
+    Friction(&'static Kind),
 }
 
 impl Softness {
-    /// All.
-    pub const ALL: [Self; 3] = [Self::Penalty, Self::Regularisation, Self::ElasticSlip];
-
     /// Which one a key of a scene is of.
     pub fn of(key: &str) -> Option<Self> {
-        match key {
-            "contact.penalty" | "contact.tolerance" => Some(Self::Penalty),
-            "friction.regularisation" => Some(Self::Regularisation),
-            "friction.elastic_slip" => Some(Self::ElasticSlip),
-            _ => None,
+        if matches!(key, "contact.penalty" | "contact.tolerance") {
+            return Some(Self::Penalty);
         }
+        let kind = KINDS.into_iter().find(|kind| Some(key) == key_of(kind).as_deref())?;
+        Some(Self::Friction(kind))
     }
 
     /// Whether the law of a scene is exact where it would be.
     pub fn is_none(self, scene: &Scene) -> bool {
         match self {
             Self::Penalty => scene.contact.penalty.is_none(),
-            Self::Regularisation | Self::ElasticSlip => {
-                scene.friction.as_ref().is_some_and(|friction| friction.law == Law::Coulomb)
-            }
+            Self::Friction(_) => scene.friction.as_ref().is_some_and(|friction| friction.law.is_exact()),
         }
+    }
+
+    /// Whether any law of a scene is exact.
+    pub fn lacks(scene: &Scene) -> bool {
+        let friction = scene.friction.as_ref().is_some_and(|friction| friction.law.is_exact());
+        Self::Penalty.is_none(scene) || friction
     }
 
     /// The change of a scene, `key=value` as after `--set`, that its key needs beside it.
     pub fn law(self, scene: &Scene) -> Option<String> {
-        let law = match self {
-            Self::Penalty => return None,
-            Self::Regularisation => "coulomb_tanh",
-            Self::ElasticSlip => "coulomb_elastic_slip",
-        };
-        self.is_none(scene).then(|| format!("friction.law={law}"))
+        match self {
+            Self::Penalty => None,
+            Self::Friction(kind) => self.is_none(scene).then(|| format!("friction.law={}", kind.name)),
+        }
     }
 
     /// The changes that leave the law itself.
     pub fn taken_out(self) -> Vec<String> {
-        let changes = match self {
-            Self::Penalty => vec!["contact.penalty=", "contact.tolerance=", "contact.method="],
-            Self::Regularisation => vec!["friction.law=coulomb", "friction.regularisation="],
-            Self::ElasticSlip => vec!["friction.law=coulomb", "friction.elastic_slip="],
-        };
-        changes.into_iter().map(str::to_owned).collect()
+        match self {
+            Self::Penalty => ["contact.penalty=", "contact.tolerance=", "contact.method="].map(str::to_owned).to_vec(),
+            Self::Friction(kind) => {
+                let exact = KINDS.into_iter().filter(|kind| kind.softness.is_none());
+                let law = exact.map(|kind| format!("friction.law={}", kind.name));
+                law.chain(key_of(kind).map(|key| format!("{key}="))).collect()
+            }
+        }
     }
+}
+
+/// The key of what a law is softened by, in a scene.
+fn key_of(kind: &Kind) -> Option<String> {
+    kind.softness.as_ref().map(|softness| format!("friction.{}", softness.key))
 }

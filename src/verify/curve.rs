@@ -59,7 +59,7 @@ fn case(held: &str, rule: PoissonRule, phase: Phase, velocities: Vec<f64>) -> Ca
     let setting = Setting {
         grading: 4.0,
         penalty: None,
-        friction: Some(Friction::constant(Law::Coulomb, 0.2)),
+        friction: Some(Friction::constant(Law::exact(), 0.2)),
         ..Setting::new(CELLS, one_arm(0.3, rule), vec![phase])
     };
     let compare = move |_: &[_]| {

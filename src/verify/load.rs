@@ -151,7 +151,7 @@ fn full_slip(n: usize, coefficient: &str, shear_limit: Option<f64>, law: fn(f64)
         mean_dilatation: true,
         penalty: None,
         friction: Some(Friction {
-            law: Law::Coulomb,
+            law: Law::exact(),
             coefficient: Coefficient::Formula(coefficient.to_owned()),
             shear_limit,
             tables: BTreeMap::new(),

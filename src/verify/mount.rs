@@ -60,7 +60,7 @@ fn stick_slip() -> Case {
             "{DYNAMIC:?} + {:?}*exp(-v/{FALL:?}) + {RISE:?}*v",
             STATIC - DYNAMIC
         )),
-        ..Friction::constant(Law::Coulomb, 0.0)
+        ..Friction::constant(Law::exact(), 0.0)
     };
     let setting = Setting {
         friction: Some(friction),

@@ -99,7 +99,7 @@ const RIGID: f64 = 1e10;
 
 /// Friction regularised by the slip rate, m/s.
 pub fn tanh(coefficient: f64, regularisation: f64) -> Friction {
-    Friction::constant(Law::CoulombTanh { regularisation }, coefficient)
+    Friction::constant(Law::tanh(regularisation), coefficient)
 }
 
 impl Setting {
@@ -235,9 +235,9 @@ impl Setting {
 
     /// The oracle's forces at the end of each phase, by the same steps on `nodes` nodes; for waves at constant velocity.
     pub fn transient(&self, nodes: usize) -> Result<Vec<Vec<transient::Forces>>> {
-        let friction = self.friction.as_ref().map(|friction| (friction.law, friction.coefficient()));
+        let friction = self.friction.as_ref().map(|friction| (friction.law.rate(), friction.coefficient()));
         let (friction, regularisation) = match friction {
-            Some((Law::CoulombTanh { regularisation }, Some(coefficient))) => (coefficient, regularisation),
+            Some((Some(regularisation), Some(coefficient))) => (coefficient, regularisation),
             Some(_) => {
                 return Err(Error::Internal("the oracle's friction is regularised by the slip rate".into()));
             }

@@ -208,7 +208,7 @@ fn rigidly(n: usize, velocity: f64) -> (Setting, usize) {
     let mut setting = Setting {
         grading: 4.0,
         penalty: None,
-        friction: Some(Friction::constant(Law::Coulomb, 0.2)),
+        friction: Some(Friction::constant(Law::exact(), 0.2)),
         ..slid(n, if velocity.is_finite() && velocity > 0.0 { velocity } else { 1.0 }, rule, APPROACH)
     };
     let passed = |speed: f64, spacings: f64, steps: usize| Phase::slide(speed, spacings * cell, steps, APPROACH);

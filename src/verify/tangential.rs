@@ -23,10 +23,9 @@ const NONE: &str = "none at all";
 
 pub fn cases(quick: bool) -> Vec<Case> {
     let mut list =
-        vec![mindlin(512, Law::Coulomb), cycle(if quick { 128 } else { 256 }, Law::Coulomb), punch(256), held(64)];
+        vec![mindlin(512, Law::exact()), cycle(if quick { 128 } else { 256 }, Law::exact()), punch(256), held(64)];
     if !quick {
-        let elastic_slip = |elastic_slip: f64| Law::CoulombElasticSlip { elastic_slip };
-        list.extend([mindlin(512, elastic_slip(1e-7)), cycle(256, elastic_slip(1e-9))]);
+        list.extend([mindlin(512, Law::elastic_slip(1e-7)), cycle(256, Law::elastic_slip(1e-9))]);
     }
     list
 }
@@ -37,14 +36,14 @@ fn nearly_incompressible(n: usize, indenter: Indenter, law: Law, phases: Vec<Pha
     Setting {
         depth: 1.0,
         mean_dilatation: true,
-        penalty: deep.penalty.filter(|_| law != Law::Coulomb),
+        penalty: deep.penalty.filter(|_| !law.is_exact()),
         friction: Some(Friction::constant(law, FRICTION)),
         ..deep
     }
 }
 
 fn said(law: Law) -> &'static str {
-    if law == Law::Coulomb { "Coulomb's law itself" } else { "elastic slip" }
+    if law.is_exact() { "Coulomb's law itself" } else { "elastic slip" }
 }
 
 /// A motion along the face at a held approach, in one second.
@@ -119,11 +118,11 @@ fn mindlin(n: usize, law: Law) -> Case {
             ),
             Row::new(OSCILLATION, [row.traction_oscillation, 0.0], 2.0 * h / c, "edges: 2 h/c; a checkerboard: 1"),
         ];
-        rows.extend(match law {
-            Law::CoulombElasticSlip { elastic_slip } => {
+        rows.extend(match law.slip() {
+            Some(elastic_slip) => {
                 vec![Row::new("largest slip of a sticking point, m", [row.stuck_slip, 0.0], elastic_slip, STATED)]
             }
-            _ => vec![
+            None => vec![
                 Row::new("largest slip of a sticking point, m", [row.stuck_slip, 0.0], 0.0, NONE),
                 Row::new(
                     "nodes that do not stick or slip as they should",
@@ -195,7 +194,7 @@ fn cycle(n: usize, law: Law) -> Case {
             Row::new("Q_x at the third turn, N/m", turns[2], tolerance, why),
             Row::new("Q_x where it differs most, N/m", worst, tolerance, why),
         ];
-        if law == Law::Coulomb {
+        if law.is_exact() {
             let what = "nodes that do not stick or slip as they should";
             rows.push(Row::new(what, [wrong, 0.0], 0.0, NODE_BY_NODE));
         }
@@ -214,8 +213,8 @@ fn punch(n: usize) -> Case {
     let (approach, nodes) = (1e-4, n / 8 + 1);
     let half_width = 0.5 * nodes as f64 / n as f64;
     let phases = vec![Phase::press(1.0, 1, approach)];
-    let mut setting = nearly_incompressible(n, Indenter::Punch(half_width), Law::Coulomb, phases);
-    setting.friction = Some(Friction::constant(Law::Coulomb, FRICTION));
+    let mut setting = nearly_incompressible(n, Indenter::Punch(half_width), Law::exact(), phases);
+    setting.friction = Some(Friction::constant(Law::exact(), FRICTION));
     let (exact, uniform, excess) = closed_form(&setting);
     let normal_at = move |half_width: f64| approach / (uniform + exact.indentation_of_punch(half_width, 1.0));
     let slides = FRICTION * (approach + excess * normal_at(half_width));
@@ -270,7 +269,7 @@ fn held(n: usize) -> Case {
     let hold = Phase { duration: 1e4, ..sway(0.0, 20, approach) };
     let phases = vec![Phase::press(1.0, 5, approach), sway(1.2e-5, 5, approach), hold];
     let setting = Setting {
-        friction: Some(Friction::constant(Law::Coulomb, FRICTION)),
+        friction: Some(Friction::constant(Law::exact(), FRICTION)),
         penalty: None,
         ..Setting::new(n, elastic(300.0, 0.3), phases)
     };

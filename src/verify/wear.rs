@@ -94,7 +94,7 @@ fn wave(n: usize, friction: f64) -> Case {
         // By whole cells in a step.
         let velocity = 2.0 / time;
         let slide = Phase { velocity, ..Phase::load(time, steps, 0.006) };
-        let law = (friction > 0.0).then(|| Friction::constant(Law::Coulomb, friction));
+        let law = (friction > 0.0).then(|| Friction::constant(Law::exact(), friction));
         Setting {
             indenter: Indenter::Wave(height),
             penalty: None,

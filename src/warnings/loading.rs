@@ -6,7 +6,7 @@ use super::encounter::Encounter;
 use super::{Before, Warning, above, phase};
 use crate::loading::{Motion, Phase};
 use crate::rheology::Prony;
-use crate::scene::{Law, Memory, Scene, Stepping};
+use crate::scene::{Memory, Scene, Stepping};
 
 /// The regularisation over the slowest motion that friction resists; the elastic slip over the shortest.
 pub const MOST_REGULARISED: f64 = 0.01;
@@ -50,7 +50,7 @@ fn speeds(phase: &Phase) -> [f64; 2] {
 /// Above [`MOST_REGULARISED`] of the slowest motion in contact.
 pub fn regularisation(before: &Before<'_>) -> Option<Warning> {
     let friction = before.scene.friction.as_ref().filter(|friction| !friction.is_none())?;
-    let Law::CoulombTanh { regularisation } = friction.law else { return None };
+    let regularisation = friction.law.rate()?;
     let named = |phase: &Phase| {
         let [towards, along] = speeds(phase);
         [(towards, "approach"), (along, "sliding")].map(|(speed, what)| (speed, what, phase.name.clone()))
@@ -74,7 +74,7 @@ pub fn regularisation(before: &Before<'_>) -> Option<Warning> {
 /// approach or the onset of sliding displaces the face by.
 pub fn elastic_slip(before: &Before<'_>) -> Option<Warning> {
     let friction = before.scene.friction.as_ref()?;
-    let Law::CoulombElasticSlip { elastic_slip } = friction.law else { return None };
+    let elastic_slip = friction.law.slip()?;
     // Of a formula nobody knows the coefficient beforehand.
     let coefficient = friction.coefficient().unwrap_or(1.0);
     let range = |phase: &Phase| {

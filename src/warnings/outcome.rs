@@ -2,7 +2,7 @@
 
 use super::{After, Warning, above, cells, phase};
 use crate::output::HistoryRow;
-use crate::scene::{Law, Motion, Phase, Strategy};
+use crate::scene::{Motion, Phase, Strategy};
 
 /// The imbalance of energies over the largest work.
 pub const MOST_IMBALANCE: f64 = 0.05;
@@ -156,7 +156,7 @@ pub fn between_nodes(after: &After<'_>) -> Option<Warning> {
 /// Above [`MOST_STUCK_SLIP`] of what the indenter moves in some phase: along the face, or else towards it.
 pub fn stuck_slip(after: &After<'_>) -> Option<Warning> {
     let friction = after.scene.friction.as_ref().filter(|friction| !friction.is_none())?;
-    let by_rate = matches!(friction.law, Law::CoulombTanh { .. });
+    let softness = friction.law.kind.softness.as_ref()?;
     let phases = after.history.chunk_by(|a, b| a.phase == b.phase).filter_map(|rows| {
         let (first, last) = (rows.first()?, rows.last()?);
         let phase = after.scene.phases.get(first.phase)?;
@@ -173,7 +173,7 @@ pub fn stuck_slip(after: &After<'_>) -> Option<Warning> {
         slip / motion,
         (slip / (0.1 * MOST_STUCK_SLIP * motion)).ceil()
     );
-    Some(Warning::new(if by_rate { "friction.regularisation" } else { "friction.elastic_slip" }, text))
+    Some(Warning::new(format!("friction.{}", softness.key), text))
 }
 
 /// Above [`MOST_OSCILLATION`].

@@ -5,7 +5,6 @@ use super::{Run, nearest};
 use crate::error::Result;
 use crate::output::reader::Field;
 use crate::plot::{Axis, Colour, Colouring, Map, Panel, Raster, Sheet};
-use crate::scene::Law;
 
 /// What there is, and its colour.
 pub(super) const CLASSES: [(&str, Colour); 3] =
@@ -64,8 +63,8 @@ impl State<'_> {
 /// Whether a point in contact sticks, with its pressure and what its shear and slip rate amount to.
 pub(super) fn sticks(run: &Run, (pressure, shear, rate): (f64, f64, f64)) -> bool {
     let friction = run.scene.friction.as_ref();
-    match friction.map(|friction| (friction.law, friction.coefficient())) {
-        Some((Law::CoulombTanh { regularisation }, _)) => rate < regularisation,
+    match friction.map(|friction| (friction.law.rate(), friction.coefficient())) {
+        Some((Some(regularisation), _)) => rate < regularisation,
         // Up to round-off.
         Some((_, Some(coefficient))) => shear < (1.0 - 1e-12) * coefficient * pressure,
         Some((_, None)) => rate == 0.0,

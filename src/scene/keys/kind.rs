@@ -19,12 +19,14 @@ pub(crate) struct Keys {
 pub(crate) struct Decision {
     /// The key.
     pub by: &'static str,
-    /// For each word the keys beside that.
+    /// The keys that there are for each word.
+    pub always: &'static [&'static str],
+    /// For each word the keys beside those.
     pub of: &'static [(&'static str, &'static [&'static str])],
 }
 
 /// A key of a table.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Key {
     /// How it is written.
     pub name: &'static str,
@@ -39,7 +41,7 @@ pub(crate) struct Key {
 }
 
 /// What a key takes. Texts complete "must be ...".
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) enum Kind {
     /// A number. Whole numbers are numbers.
     Number(Quantity),
@@ -148,9 +150,9 @@ impl Keys {
 
     /// The keys that there are beside what the deciding one says; all where it says nothing that is known.
     pub fn beside(&self, word: Option<&str>) -> Vec<&'static str> {
-        let chosen = self.decides.as_ref().and_then(|Decision { by, of }| {
+        let chosen = self.decides.as_ref().and_then(|Decision { by, always, of }| {
             let (_, others) = of.iter().find(|(known, _)| Some(*known) == word)?;
-            Some(std::iter::once(*by).chain(others.iter().copied()).collect())
+            Some(std::iter::once(*by).chain(always.iter().chain(*others).copied()).collect())
         });
         chosen.unwrap_or_else(|| self.keys.iter().map(|key| key.name).collect())
     }

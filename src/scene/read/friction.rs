@@ -5,19 +5,16 @@ use std::collections::BTreeMap;
 use toml::Value;
 
 use crate::error::Result;
+use crate::friction::KINDS;
 use crate::scene::keys::{Section, number};
 use crate::scene::{Coefficient, Friction, Law};
 
 /// Reads it.
 pub(super) fn read(section: &Section) -> Result<Friction> {
     section.only_known()?;
-    let laws =
-        [("coulomb", None), ("coulomb_tanh", Some("regularisation")), ("coulomb_elastic_slip", Some("elastic_slip"))];
-    let law = match section.choice("law", &laws, &[])? {
-        None => Law::Coulomb,
-        Some(key @ "elastic_slip") => Law::CoulombElasticSlip { elastic_slip: section.number(key)? },
-        Some(key) => Law::CoulombTanh { regularisation: section.number(key)? },
-    };
+    let kind = section.choice("law", &KINDS.map(|kind| (kind.name, kind)), &[])?;
+    let softness = kind.softness.as_ref().map(|softness| section.number(softness.key)).transpose()?;
+    let law = Law { kind, softness: softness.unwrap_or(0.0) };
     let shear_limit = section.optional_number("shear_limit")?;
     let friction = Friction {
         law,

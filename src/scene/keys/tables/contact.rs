@@ -3,6 +3,7 @@
 use Bound::At;
 
 use super::{LENGTH, TOLERANCE, choice, number, table, words};
+use crate::friction::KINDS;
 use crate::scene::adhesion::{NONE as NO_BOND, SHEAR_STRENGTH};
 use crate::scene::heat::INSULATED;
 use crate::scene::keys::kind::{Decision, Key, Keys, Kind};
@@ -24,29 +25,77 @@ pub(super) static CONTACT: Keys = table(
 
 pub(super) static FRICTION: Keys = Keys {
     about: "Coulomb's law, itself or regularised. Without this table the contact is frictionless.",
-    keys: &[
-        choice("law", &["coulomb", "coulomb_tanh", "coulomb_elastic_slip"]).required(),
-        Key::new(
-            "coefficient",
-            Kind::NumberOrFormula(Quantity::within("a friction coefficient, at least 0", At(0.0), Bound::None)),
-        )
-        .required()
-        .about("or a formula of v, p and s, such as \"0.1 + 0.2*exp(-v/1e-3)\""),
-        number("shear_limit", Quantity::positive("a positive shear traction in Pa"))
-            .about("which the shear does not exceed"),
-        Key::new("tables", Kind::Curves("an array of points [x, y]")).about("that the formula names, instead of files"),
-        Key::new("checksums", Kind::Texts("an array of texts")).about("of the files, put there where they are read"),
-        number("regularisation", Quantity::positive("a positive slip rate in m/s")).required(),
-        number("elastic_slip", Quantity::positive("a positive length in m")).required(),
-    ],
+    keys: &FRICTION_KEYS,
     decides: Some(Decision {
         by: "law",
-        of: &[
-            ("coulomb", &["coefficient", "shear_limit", "tables", "checksums"]),
-            ("coulomb_tanh", &["coefficient", "shear_limit", "tables", "checksums", "regularisation"]),
-            ("coulomb_elastic_slip", &["coefficient", "shear_limit", "tables", "checksums", "elastic_slip"]),
-        ],
+        always: &["coefficient", "shear_limit", "tables", "checksums"],
+        of: &SOFTNESSES,
     }),
+};
+
+const LAWS: [&str; KINDS.len()] = {
+    let mut laws = [""; KINDS.len()];
+    let mut i = 0;
+    while i < KINDS.len() {
+        laws[i] = KINDS[i].name;
+        i += 1;
+    }
+    laws
+};
+
+/// Of each law the key of what it is softened by.
+const SOFTNESSES: [(&str, &[&str]); KINDS.len()] = {
+    let mut all: [(&str, &[&str]); KINDS.len()] = [("", &[]); KINDS.len()];
+    let mut i = 0;
+    while i < KINDS.len() {
+        all[i].0 = KINDS[i].name;
+        if let Some(softness) = &KINDS[i].softness {
+            all[i].1 = std::slice::from_ref(&softness.key);
+        }
+        i += 1;
+    }
+    all
+};
+
+const OF_ANY_LAW: [Key; 5] = [
+    choice("law", &LAWS).required(),
+    Key::new(
+        "coefficient",
+        Kind::NumberOrFormula(Quantity::within("a friction coefficient, at least 0", At(0.0), Bound::None)),
+    )
+    .required()
+    .about("or a formula of v, p and s, such as \"0.1 + 0.2*exp(-v/1e-3)\""),
+    number("shear_limit", Quantity::positive("a positive shear traction in Pa"))
+        .about("which the shear does not exceed"),
+    Key::new("tables", Kind::Curves("an array of points [x, y]")).about("that the formula names, instead of files"),
+    Key::new("checksums", Kind::Texts("an array of texts")).about("of the files, put there where they are read"),
+];
+
+const SOFT: usize = {
+    let (mut soft, mut i) = (0, 0);
+    while i < KINDS.len() {
+        soft += KINDS[i].softness.is_some() as usize;
+        i += 1;
+    }
+    soft
+};
+
+/// The keys of any law, and what each is softened by.
+const FRICTION_KEYS: [Key; OF_ANY_LAW.len() + SOFT] = {
+    let mut keys = [OF_ANY_LAW[0]; OF_ANY_LAW.len() + SOFT];
+    let (mut count, mut i) = (0, 0);
+    while count < OF_ANY_LAW.len() {
+        keys[count] = OF_ANY_LAW[count];
+        count += 1;
+    }
+    while i < KINDS.len() {
+        if let Some(softness) = &KINDS[i].softness {
+            keys[count] = number(softness.key, Quantity::positive(softness.what)).required();
+            count += 1;
+        }
+        i += 1;
+    }
+    keys
 };
 
 pub(crate) const WEARING: [(&str, Wearing); 2] = [("body", Wearing::Body), ("indenter", Wearing::Indenter)];

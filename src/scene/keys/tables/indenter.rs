@@ -72,6 +72,7 @@ pub(super) static INDENTER: Keys = Keys {
     ],
     decides: Some(Decision {
         by: "profile",
+        always: &[],
         of: &[
             ("harmonic", &["amplitude", "wavelength"]),
             ("parabola", &["radius", "centre"]),
