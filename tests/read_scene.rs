@@ -301,6 +301,9 @@ impl Random {
         }
         let solid = self.solid(wavelength);
         let heat = self.heat(&mut materials);
+        let friction = self.of(&[None, Some(friction)]);
+        let wear = self.wear(exact, matches!(body, Body::Layer(_)), friction.is_some());
+        let adhesion = self.adhesion(exact && wear.is_none() && !adaptive, friction.is_some());
         Scene {
             title: self.of(&["", "plain", "é \"quoted\" \\ # = [layer]", "'''"]).to_owned(),
             body,
@@ -326,11 +329,11 @@ impl Random {
                 ][..7 - usize::from(space)])
             },
             contact: Contact { penalty, quadrature },
-            friction: self.of(&[None, Some(friction)]),
+            friction,
             heat,
             mount: None,
-            wear: None,
-            adhesion: None,
+            wear,
+            adhesion,
             output: Output {
                 interface_every: self.below(3) as usize,
                 bulk_at: if self.below(2) == 0 { vec![] } else { ends.chain(times).collect() },
@@ -399,6 +402,28 @@ impl Random {
             (material.conductivity, material.heat_capacity) = (Some(self.positive()), Some(1e6 * self.positive()));
         }
         Some(heat)
+    }
+
+    /// Of what is solved at nodes; an indenter wears over a layer, by the energy with friction.
+    fn wear(&mut self, nodal: bool, layer: bool, friction: bool) -> Option<Wear> {
+        let wear = Wear {
+            of: self.of(&[Wearing::Body, Wearing::Indenter][..1 + usize::from(layer)]),
+            law: self.of(&[WearLaw::Archard, WearLaw::Energy][..1 + usize::from(friction)]),
+            coefficient: self.positive(),
+        };
+        (self.below(4) == 0 && nodal).then_some(wear)
+    }
+
+    /// The same; a shear strength is part of friction.
+    fn adhesion(&mut self, nodal: bool, friction: bool) -> Option<Adhesion> {
+        let bonds = [Bond::None, Bond::ShearStrength(self.positive())];
+        let adhesion = Adhesion {
+            law: self.of(&[AdhesionLaw::Exponential, AdhesionLaw::Bilinear, AdhesionLaw::Dugdale]),
+            work: self.positive(),
+            range: 1e-9 * self.positive(),
+            friction: self.of(&bonds[..1 + usize::from(friction)]),
+        };
+        (self.below(3) == 0 && nodal).then_some(adhesion)
     }
 
     /// One material, or several: strata of a layer, regions of a mesh.

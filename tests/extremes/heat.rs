@@ -43,7 +43,7 @@ impl Warm {
     }
 
     /// The scene of the sample with this.
-    pub fn scene(&self, sample: &Sample) -> String {
+    pub fn scene(&self, sample: &Sample, text: &str) -> String {
         let height = sample.depth / sample.cells[1] as f64;
         let conductivity = self.fourier * height * height / sample.step * self.capacity;
         let base = if self.insulated { "\"insulated\"".to_owned() } else { format!("{BASE:?}") };
@@ -60,7 +60,7 @@ impl Warm {
             "[heat]\ninitial = {INITIAL:?}\nbase = {base}\nshare = {}\narms = {}\ncoupled = {}\n{air}",
             self.share, self.arms, self.coupled
         );
-        sample.scene(1.0, 1.0, 1.0).replacen("[indenter]", &format!("{material}{heat}[indenter]"), 1)
+        text.replacen("[indenter]", &format!("{material}{heat}[indenter]"), 1)
     }
 
     /// All temperatures are numbers, none is below all that was told, the mean not above the highest; what entered is stored or went

@@ -7,21 +7,24 @@
 //! and lifting off, everything in steps that pass anything from nothing to very many wavelengths.
 //!
 //! `MPJR_EXTREMES=500 cargo test --release --test extremes -- random` takes 500 scenes each instead of the first few.
-//! With `-- random_scenes`, `MPJR_EXTREMES_CHOICE=monolithic,gauss` (or `coulomb_elastic_slip`, `augmented`) takes other
-//! ways to solve them, `MPJR_EXTREMES_OUT=FILE.csv` writes a line for each, and `MPJR_EXTREMES_SCENES=DIR` leaves those that
-//! do not converge there.
+//! With `-- random_scenes`, `MPJR_EXTREMES_CHOICE=monolithic,gauss` (or `coulomb_elastic_slip`, `augmented`, `exact`) takes other
+//! ways to solve them, `exact,adhesion` (`heat`, `wear`) those that have that besides, `MPJR_EXTREMES_OUT=FILE.csv` writes a line for
+//! each, and `MPJR_EXTREMES_SCENES=DIR` leaves those that do not converge there.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod adhesion;
 mod exact;
 mod heat;
 #[path = "../common/mpi.rs"]
 mod mpi_cases;
 mod sample;
+mod wear;
 
 use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
+use adhesion::Sticky;
 use heat::Warm;
 use mpi::topology::SimpleCommunicator;
 use mpi_cases::Case;
@@ -29,6 +32,7 @@ use mpjr::error::{Error, Result};
 use mpjr::scene::{self, Source};
 use mpjr::solution::{self, Solution};
 use sample::{Choice, Draw, Sample};
+use wear::Worn;
 
 const CASES: &[Case] = &[
     Case::new("random_scenes", &[1], random_scenes),
@@ -36,6 +40,8 @@ const CASES: &[Case] = &[
     Case::new("random_exact_scenes", &[1], random_exact_scenes),
     Case::new("random_monolithic_scenes", &[1], random_monolithic_scenes),
     Case::new("random_heat_scenes", &[1], random_heat_scenes),
+    Case::new("random_adhesive_scenes", &[1], random_adhesive_scenes),
+    Case::new("random_worn_scenes", &[1], random_worn_scenes),
     Case::new("full_contact_is_that_of_the_closed_form", &[1], exact::full_contact),
     Case::new("units_do_not_matter", &[1], units_do_not_matter),
     Case::new("everything_in_one_step", &[1], everything_in_one_step),
@@ -78,11 +84,80 @@ fn random_heat_scenes(world: &SimpleCommunicator, _: &Path) {
     random(world, "exact,heat", 120);
 }
 
+/// The same with surfaces that pull each other, half of them with a penalty: tractions are those of the gaps; found: 99.4 % of 500 (not 30,
+/// 305 and 349).
+fn random_adhesive_scenes(world: &SimpleCommunicator, _: &Path) {
+    random(world, "exact,adhesion", 120);
+}
+
+/// The same with wear of the body or of the indenter: what is worn off is what tractions and slips say; found: 99.8 % of 500 (not 441).
+fn random_worn_scenes(world: &SimpleCommunicator, _: &Path) {
+    random(world, "exact,wear", 120);
+}
+
+/// What a scene has besides.
+#[derive(Debug, Default)]
+struct Beside {
+    warm: Option<Warm>,
+    sticky: Option<Sticky>,
+    worn: Option<Worn>,
+}
+
+impl Beside {
+    fn scene(&self, sample: &Sample) -> String {
+        let mut text = sample.scene(1.0, 1.0, 1.0);
+        if let Some(warm) = &self.warm {
+            text = warm.scene(sample, &text);
+        }
+        if let Some(sticky) = &self.sticky {
+            text = sticky.scene(sample, &text);
+        }
+        match &self.worn {
+            Some(worn) => worn.scene(sample, &text),
+            None => text,
+        }
+    }
+
+    fn keeps_the_laws(&self, sample: &Sample, solution: &Solution) -> std::result::Result<(), String> {
+        keeps_the_laws(sample, self.sticky.as_ref(), solution)?;
+        self.warm.as_ref().map_or(Ok(()), |warm| warm.keeps_the_balance(sample, solution))?;
+        self.worn.as_ref().map_or(Ok(()), |worn| worn.keeps_account(sample, solution))
+    }
+}
+
+/// Draws of what scenes have besides: of their own, so that the scenes are those without.
+struct Draws {
+    words: Vec<String>,
+    heat: Draw,
+    adhesion: Draw,
+    wear: Draw,
+}
+
+impl Draws {
+    const WORDS: [&str; 3] = ["heat", "adhesion", "wear"];
+
+    /// Those that a choice asks for, and the rest of it.
+    fn of(choice: &str) -> (Self, String) {
+        let (words, rest): (Vec<&str>, Vec<&str>) = choice.split(',').partition(|word| Self::WORDS.contains(word));
+        let words = words.into_iter().map(str::to_owned).collect();
+        (Self { words, heat: Draw(2), adhesion: Draw(3), wear: Draw(4) }, rest.join(","))
+    }
+
+    fn next(&mut self, sample: Sample) -> (Sample, Beside) {
+        let [heat, adhesion, wear] = Self::WORDS.map(|word| self.words.iter().any(|asked| asked == word));
+        let warm = heat.then(|| Warm::random(&mut self.heat, &sample));
+        let sticky = adhesion.then(|| Sticky::random(&mut self.adhesion));
+        let worn = wear.then(|| Worn::random(&mut self.wear, &sample));
+        let sample = match &sticky {
+            Some(sticky) => sticky.on(sample),
+            None => sample,
+        };
+        (sample, Beside { warm, sticky, worn })
+    }
+}
+
 fn random(world: &SimpleCommunicator, choice: &str, count: usize) {
-    // Draws of its own, so that the scenes are those without heat.
-    let warms = choice.contains("heat");
-    let choice = choice.replace(",heat", "");
-    let mut heat = Draw(2);
+    let (mut draws, choice) = Draws::of(choice);
     let variable = |name: &str| std::env::var(name).ok();
     let count = variable("MPJR_EXTREMES").and_then(|count| count.parse().ok()).unwrap_or(count);
     let scenes = variable("MPJR_EXTREMES_SCENES");
@@ -91,9 +166,8 @@ fn random(world: &SimpleCommunicator, choice: &str, count: usize) {
     let mut slowest = (0.0, 0);
     let mut table = String::from(Sample::COLUMNS);
     for i in 0..count {
-        let sample = Sample::random(&mut draw, Choice::of(&choice));
-        let warm = warms.then(|| Warm::random(&mut heat, &sample));
-        let scene = warm.as_ref().map_or_else(|| sample.scene(1.0, 1.0, 1.0), |warm| warm.scene(&sample));
+        let (sample, beside) = draws.next(Sample::random(&mut draw, Choice::of(&choice)));
+        let scene = beside.scene(&sample);
         let begun = Instant::now();
         let outcome = solve(world, &scene);
         let seconds = begun.elapsed().as_secs_f64();
@@ -104,15 +178,14 @@ fn random(world: &SimpleCommunicator, choice: &str, count: usize) {
         match outcome {
             Ok(solution) => {
                 converged += 1;
-                let balances = |warm: &Warm| warm.keeps_the_balance(&sample, &solution);
-                keeps_the_laws(&sample, &solution)
-                    .and_then(|()| warm.as_ref().map_or(Ok(()), balances))
-                    .unwrap_or_else(|what| panic!("{i}: {what}\n{sample:?} {warm:?}"));
+                beside
+                    .keeps_the_laws(&sample, &solution)
+                    .unwrap_or_else(|what| panic!("{i}: {what}\n{sample:?} {beside:?}\n{scene}"));
             }
             Err(error @ Error::Solver(_)) => {
                 let text = error.to_string();
                 assert!(text.contains("no convergence in the step") && text.contains("may help"), "{text}");
-                println!("{i}: {text} {sample:?}");
+                println!("{i}: {text} {sample:?} {beside:?}");
                 if let Some(directory) = &scenes {
                     std::fs::write(Path::new(directory).join(format!("{i:03}.toml")), &scene).unwrap();
                 }
@@ -127,26 +200,32 @@ fn random(world: &SimpleCommunicator, choice: &str, count: usize) {
     assert!(f64::from(converged) >= 0.98 * count as f64, "only {converged} of {count} converge");
 }
 
-/// All numbers finite, 0 <= p, |q| <= f p, no traction in the gap; |Q| <= f N; N the sum of the nodal pressures; energy is
-/// not made.
-fn keeps_the_laws(sample: &Sample, solution: &Solution) -> std::result::Result<(), String> {
+/// All numbers finite; where nothing pulls 0 <= p, |q| <= f p, no traction in the gap, |Q| <= f N; N the sum of the nodal pressures; energy
+/// is not made.
+fn keeps_the_laws(sample: &Sample, sticky: Option<&Sticky>, solution: &Solution) -> std::result::Result<(), String> {
     let f = sample.friction * (1.0 + 1e-9);
     for row in &solution.history {
         let numbers = [row.normal_force, row.tangential_force, row.hysteretic_force, row.max_penetration];
         let finite = numbers.iter().all(|number| number.is_finite());
-        if !finite || row.normal_force < 0.0 || row.tangential_force.abs() > f * row.normal_force {
+        let bounded = row.normal_force >= 0.0 && row.tangential_force.abs() <= f * row.normal_force;
+        if !finite || sticky.is_none() && !bounded {
             return Err(format!("{row:?}"));
         }
     }
     for (phase, end) in solution.ends.iter().enumerate() {
-        for (node, ((p, q), gap)) in end.pressure.iter().zip(&end.shear).zip(&end.gap).enumerate() {
+        if let Some(sticky) = sticky {
+            sticky.keeps_the_laws(sample, end)?;
+        }
+        let nodes = end.pressure.iter().zip(&end.shear).zip(&end.gap).enumerate();
+        for (node, ((p, q), gap)) in nodes.filter(|_| sticky.is_none()) {
             let known = p.is_finite() && q.is_finite() && gap.is_finite();
             if !known || *p < 0.0 || q.abs() > f * p || (*gap > 0.0 && *p != 0.0) {
                 return Err(format!("node {node}: p = {p:e}, q = {q:e}, gap = {gap:e}"));
             }
         }
         let (normal, sum) = (solution.end_of(phase).normal_force, sample.resultant(&end.pressure));
-        if sample.choice.quadrature == "nodal" && (normal - sum).abs() > 1e-12 * sum {
+        let size = sample.resultant(&end.pressure.iter().map(|p| p.abs()).collect::<Vec<_>>());
+        if sample.choice.quadrature == "nodal" && (normal - sum).abs() > 1e-12 * size {
             return Err(format!("phase {phase}: N = {normal:e}, the nodal pressures come to {sum:e}"));
         }
     }
