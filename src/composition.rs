@@ -7,6 +7,7 @@ mod estimate;
 mod inputs;
 mod laws;
 mod map;
+mod means;
 mod outline;
 mod pressed;
 mod profile;
@@ -28,7 +29,7 @@ use crate::parallel::share_numbers;
 use crate::petsc::{Integrator, Matrix, Vector};
 use crate::profile::{Extruded, Profile, Surface};
 use crate::scene::Scene;
-use crate::solve::{Heated, Solid, TransientProblem};
+use crate::solve::{Heated, Means, Solid, TransientProblem};
 
 use body::Materials;
 pub use body::Meshed;
@@ -37,6 +38,7 @@ pub use course::{course, phases};
 pub use estimate::{Estimate, affordable, countable};
 pub use inputs::inputs;
 use laws::{adhering, friction, heat_of, quadrature, wearing};
+pub use means::{Chosen, MOST_DENSE, choose, means};
 pub use outline::{Outline, Stretch, outline};
 pub use pressed::PressedEnd;
 pub use profile::{Elevations, Finest, Shape, elevations, measured, reach, seam_doubt, shape};
@@ -115,9 +117,10 @@ pub fn assemble(
     (mesh, surface): (Meshed, Rc<dyn Surface>),
     compliances: &Compliances,
 ) -> Result<Problem> {
+    let means = means::shared(comm, scene, &Outline::of(scene, &mesh))?;
     let (strategy, phases) = match mesh.clone() {
-        Meshed::Plane(source) => assembled(comm, scene, (source, surface), compliances)?,
-        Meshed::Space(source) => assembled(comm, scene, (source, surface), compliances)?,
+        Meshed::Plane(source) => assembled(comm, scene, (source, surface), (compliances, means))?,
+        Meshed::Space(source) => assembled(comm, scene, (source, surface), (compliances, means))?,
     };
     let Strategy { strategy, tangent, u, integrator } = strategy;
     Ok(Problem { strategy, tangent, u, phases, integrator, mesh })
@@ -128,7 +131,7 @@ fn assembled<const D: usize>(
     comm: &SimpleCommunicator,
     scene: &Scene,
     (source, surface): (Source<D>, Rc<dyn Surface>),
-    compliances: &Compliances,
+    (compliances, means): (&Compliances, Means),
 ) -> Result<(Strategy, Vec<Phase>)> {
     let materials = Materials::new(scene);
     let bond = scene.adhesion.map(|adhesion| adhesion.friction);
@@ -145,9 +148,11 @@ fn assembled<const D: usize>(
     }
     let heated = scene.heat.as_ref().map(|heat| (heat_of(scene, heat, &materials), solid.clone()));
     let mut problem = match form(scene) {
-        Form::Monolithic => strategy::monolithic(comm, scene, (solid, materials), interface)?,
-        Form::Following => strategy::following(comm, scene, (solid, materials), interface, compliances)?,
-        Form::Remembering | Form::Coupled => strategy::remembering(comm, scene, (solid, materials), interface)?,
+        Form::Monolithic => strategy::monolithic(comm, scene, (solid, materials), (interface, means))?,
+        Form::Following => strategy::following(comm, scene, (solid, materials), interface, (compliances, means))?,
+        Form::Remembering | Form::Coupled => {
+            strategy::remembering(comm, scene, (solid, materials), (interface, means))?
+        }
     };
     let phases = phases(scene, course::penetration(scene, problem.strategy.as_mut(), clearance)?);
     if let Some((heat, solid)) = heated {

@@ -13,7 +13,7 @@ use crate::scene::{
     Adhesion, AdhesionLaw, Bond, Coefficient, Friction, Heat, Penalty, PoissonRule, Quadrature, Scene, Sides, Span,
     Strategy, Wear, WearLaw, Wearing, added_compliance, shortest_step,
 };
-use crate::solve::{Counts, Work};
+use crate::solve::{Counts, Means, Work};
 
 /// What is modelled and what is not: (modelled, not modelled).
 pub fn modelled(scene: &Scene) -> (Vec<String>, Vec<String>) {
@@ -163,6 +163,7 @@ pub fn plan(scene: &Scene, outline: &Outline) -> String {
         scene.duration()
     );
     let _ = writeln!(text, "strategy:      {}", strategy(scene, outline.unknowns));
+    text += &body(scene, outline);
     text += &results(scene);
     let _ = write!(
         text,
@@ -172,6 +173,30 @@ pub fn plan(scene: &Scene, outline: &Outline) -> String {
         estimate.memory / 1e9
     );
     text
+}
+
+/// By what the body is solved for, and why; nothing where there is nothing to choose.
+fn body(scene: &Scene, outline: &Outline) -> String {
+    let Some(chosen) = composition::means(scene, outline) else { return String::new() };
+    let needs = |means| bytes(Estimate::by(scene, outline, means).memory);
+    let name = |means| match means {
+        Means::Dense => "dense matrix of the face",
+        Means::Factor => "sparse factor",
+        Means::Multigrid => "multigrid",
+    };
+    let of_face = composition::form(scene) != Form::Monolithic;
+    let others: Vec<_> = [Means::Dense, Means::Factor, Means::Multigrid]
+        .into_iter()
+        .filter(|means| *means != chosen.means && (of_face || *means != Means::Dense))
+        .map(|means| format!("{} with a {}", needs(means), name(means)).replace("a multigrid", "multigrid"))
+        .collect();
+    format!(
+        "body:          {}{}, {} of memory ({})\n",
+        name(chosen.means),
+        if chosen.asked { " (-body_pc_type)" } else { "" },
+        needs(chosen.means),
+        others.join(", ")
+    )
 }
 
 /// How large the result file becomes, and what is left out of it unasked.

@@ -5,12 +5,13 @@ use std::path::Path;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::{Form, Outline, form, shares_face};
+use super::{Form, Outline, form, means, shares_face};
 use crate::error::{Error, Result};
 use crate::loading::Target;
 use crate::memory;
 use crate::parallel::agree;
 use crate::scene::{Body, Layer, Scene};
+use crate::solve::Means;
 
 /// What the program and its libraries take before they do anything, bytes.
 const PROGRAM: f64 = 5.7e7;
@@ -28,6 +29,16 @@ const FACE_STEP: [f64; 2] = [5e-6, 1.5e-6];
 const WAVE_STEP: f64 = 5e-8;
 /// s per cube of the components of a face, for its dense compliance.
 const FACE_INVERSE: f64 = 4e-11;
+/// Multigrid: what it takes of a matrix, beside that; s per unknown for a solve on average, and for a Newton step of all unknowns. Measured on
+/// blocks of 5,000 to 53,000 unknowns.
+const MULTIGRID: f64 = 2.0;
+const MULTIGRID_SOLVE: f64 = 8e-6;
+const MULTIGRID_STEP: f64 = 4e-5;
+/// A factor without the complement of the face, over one with it: measured on the same blocks.
+const BARE_FACTOR: f64 = 0.6;
+/// Where C is known by its products: bytes per component of the face, and products per Newton step.
+const FACE_COMPONENT: f64 = 2000.0;
+const PRODUCTS: f64 = 8.0;
 /// The most components of a face whose arms follow the temperature.
 const MOST_COUPLED: usize = 4096;
 /// What an index of PETSc counts.
@@ -45,6 +56,12 @@ pub struct Estimate {
 impl Estimate {
     /// Of a scene whose body is as the outline says.
     pub fn of(scene: &Scene, outline: &Outline) -> Self {
+        let means = means(scene, outline).map_or(Means::Dense, |chosen| chosen.means);
+        Self::by(scene, outline, means)
+    }
+
+    /// The same where the body is solved for in this way.
+    pub fn by(scene: &Scene, outline: &Outline, means: Means) -> Self {
         if let Some(layer) = scene.layer().filter(|layer| by_transforms(scene, layer)) {
             return Self::of_waves(scene, layer);
         }
@@ -69,13 +86,25 @@ impl Estimate {
         let compliance = if outline.is_in_space() { 32.0 } else { 8.0 } * face * face;
         // A factor is kept for the step lengths of two phases.
         let kept = if scene.phases.len() > 1 && outline.is_in_space() { 2.0 } else { 1.0 };
+        // Beside the matrix; of each product with C.
+        let (held, solve) = match means {
+            Means::Multigrid => (MULTIGRID * matrix, MULTIGRID_SOLVE * unknowns),
+            Means::Factor | Means::Dense => (BARE_FACTOR * fill.memory, BARE_FACTOR * fill.solve),
+        };
+        let products = PRODUCTS * newton;
         let (step, memory) = match form(scene) {
+            Form::Monolithic if means == Means::Multigrid => {
+                (newton * MULTIGRID_STEP * unknowns, (MULTIGRID + 1.5) * matrix + arms * vector)
+            }
             Form::Monolithic => (
                 newton * (2.0 * fill.solve + 1.0e-7 * unknowns) + contact,
                 8.0 * face * face + fill.memory + 4.0 * matrix + arms * vector,
             ),
             Form::Following if by_wave && outline.is_in_space() => (contact, 1e3 * face),
             Form::Following if by_wave => (contact, 80.0 * unknowns),
+            Form::Following if means != Means::Dense => {
+                (products * solve, held + FACE_COMPONENT * face + 2.0 * matrix + 8.0 * vector)
+            }
             Form::Following => (contact, compliance + fill.memory + 3.0 * matrix),
             Form::Remembering if by_wave => {
                 (contact + 3e-8 * unknowns * arms, (12.0 + arms) * vector + 80.0 * unknowns)
@@ -85,6 +114,9 @@ impl Estimate {
                 contact + 2.0 * fill.solve + fill.factor + FACE_INVERSE * face.powi(3),
                 compliance + fill.memory + 3.0 * matrix + 2.0_f64.powf(axes) * arms * vector,
             ),
+            Form::Remembering if means != Means::Dense => {
+                ((products + 2.0) * solve, kept * held + FACE_COMPONENT * face + 3.0 * matrix + (8.0 + arms) * vector)
+            }
             Form::Remembering => {
                 (contact + 2.0 * fill.solve, kept * (compliance + fill.memory) + 3.0 * matrix + arms * vector)
             }

@@ -17,8 +17,8 @@ use crate::petsc::{Integrator, Linear, Matrix, Search, Settings, Vector};
 use crate::scene::{self, Scene};
 use crate::solve::{
     Body, Bordered, Compliance, Condensed, Coupled, Following, Freedom, Inside, Interior, LARGE_FACE,
-    LARGE_PERIODIC_FACE, Layered, MAX_NEWTON, MAX_NEWTON_OF_JUMPS, Monolithic, PeriodicColumn, Relaxation, Remembering,
-    Response, Solid, Sparse, TransientProblem, Way,
+    LARGE_PERIODIC_FACE, Layered, MAX_NEWTON, MAX_NEWTON_OF_JUMPS, Means, Monolithic, PeriodicColumn, Relaxation,
+    Remembering, Response, Solid, Sparse, TransientProblem, Way,
 };
 
 /// The last elastic compliance on this rank, for the next scene with the same mesh and moduli: in a sweep it is
@@ -33,12 +33,13 @@ impl Compliances {
     fn get<const D: usize>(
         &self,
         solid: &Solid<D>,
-        team: &Team,
+        (team, means): (&Team, Means),
         compute: impl FnOnce() -> Result<Compliance<D>>,
     ) -> Result<Rc<Compliance<D>>> {
         let mut last = self.last.borrow_mut();
         let known = last.as_ref().and_then(|last| last.downcast_ref::<(Solid<D>, Rc<Compliance<D>>)>());
-        let known = known.filter(|(other, known)| other == solid && known.is_parted() == team.is_parted());
+        let alike = |known: &Compliance<D>| known.is_parted() == team.is_parted() && known.means() == means;
+        let known = known.filter(|(other, known)| other == solid && alike(known));
         // A scene in between may have been one rank's alone.
         let on_all = team.all_say(known.is_some());
         if let Some((_, compliance)) = known.filter(|_| on_all) {
@@ -87,7 +88,7 @@ pub(super) fn monolithic<const D: usize>(
     comm: &SimpleCommunicator,
     scene: &Scene,
     (solid, materials): (Solid<D>, Materials),
-    interface: Interface<D>,
+    (interface, means): (Interface<D>, Means),
 ) -> Result<Strategy> {
     let body = Body::new(comm.duplicate(), &solid)?;
     let u = body.vector()?;
@@ -101,7 +102,11 @@ pub(super) fn monolithic<const D: usize>(
     let held = freedom.unknowns() > 0;
     let parts = (interface, mounts::<D>(scene));
     let mut strategy = Monolithic::new(bulk, body, parts, &u, scene.solver.tolerance)?;
-    let linear = if held { Linear::OwnPreconditioned } else { Linear::Preconditioned };
+    let linear = match (held, means) {
+        (true, _) => Linear::OwnPreconditioned,
+        (false, Means::Multigrid) => Linear::Multigrid,
+        (false, Means::Factor | Means::Dense) => Linear::Preconditioned,
+    };
     let settings = Settings { linear, max_newton: MAX_NEWTON, max_unsolved: 1, search: Search::Least };
     if !held {
         let integrator = Integrator::new(comm, settings, &mut tangent)?;
@@ -132,11 +137,11 @@ pub(super) fn following<const D: usize>(
     scene: &Scene,
     (solid, materials): (Solid<D>, Materials),
     interface: Interface<D>,
-    compliances: &Compliances,
+    (compliances, means): (&Compliances, Means),
 ) -> Result<Strategy> {
     let u = face_vector(comm, &interface)?;
     let team = interface.team();
-    let get = || compliances.get(&solid, team, || compliance(&solid, team)).map(Some);
+    let get = || compliances.get(&solid, (team, means), || compliance(&solid, (team, means))).map(Some);
     let compliance = agree(comm, if comm.rank() == 0 || team.is_parted() { get() } else { Ok(None) })?;
     let Materials { series, times, memory, .. } = materials;
     let relaxation = match series.into_iter().next().flatten() {
@@ -145,34 +150,34 @@ pub(super) fn following<const D: usize>(
     };
     let column = PeriodicColumn::new(&solid);
     let height = solid.source.height();
-    let interior = Interior::new(comm, solid, column);
+    let interior = Interior::new(comm, solid, (column, means));
     let backing = Following { compliance, relaxation, interior, secant: 1.0, account: None };
-    condensed(comm, scene, (u, height), (interface, backing))
+    condensed(comm, scene, (u, height), (interface, backing, means))
 }
 
 pub(super) fn remembering<const D: usize>(
     comm: &SimpleCommunicator,
     scene: &Scene,
     (solid, materials): (Solid<D>, Materials),
-    interface: Interface<D>,
+    (interface, means): (Interface<D>, Means),
 ) -> Result<Strategy> {
     let team = interface.team();
     let here = comm.rank() == 0 || team.is_parted();
     let make = || match scene.is_coupled() {
         true => coupled(scene, &solid, materials),
-        false => inside(&solid, materials, team),
+        false => inside(&solid, materials, (team, means)),
     };
     let inside = if here { make().map(Some) } else { Ok(None) };
     let backing = Remembering::new(comm, agree(comm, inside)?);
     let u = face_vector(comm, &interface)?;
-    condensed(comm, scene, (u, solid.source.height()), (interface, backing))
+    condensed(comm, scene, (u, solid.source.height()), (interface, backing, means))
 }
 
 fn condensed<const D: usize, R: Response<D> + 'static>(
     comm: &SimpleCommunicator,
     scene: &Scene,
     (u, height): (Vector, f64),
-    (interface, response): (Interface<D>, R),
+    (interface, response, means): (Interface<D>, R, Means),
 ) -> Result<Strategy> {
     // Where each cell has times of its own a period has no waves.
     let periodic = scene.layer().is_some_and(scene::Layer::is_periodic) && !scene.is_coupled();
@@ -184,10 +189,12 @@ fn condensed<const D: usize, R: Response<D> + 'static>(
     let alone = interface.is_normal_alone() && !points.share_nodes() && interface.adhesion().is_none();
     let way = match alone && periodic && components > LARGE_FACE && freedom.unknowns() == 0 {
         true => Way::Pressures,
+        false if means != Means::Dense => Way::Products,
         false => Way::Newton,
     };
     let linear = match components > if periodic { LARGE_PERIODIC_FACE } else { LARGE_FACE } {
         _ if way == Way::Pressures => Linear::Own,
+        _ if way == Way::Products => Linear::OwnIterative(1e-2),
         // Where a product costs next to nothing, Newton's method need not wait for exact steps; a step from a guess that is a hundredth off
         // should end below its tolerance.
         true if components <= LARGE_FACE => Linear::OwnIterative(1e-7),
@@ -220,21 +227,31 @@ fn face_vector<const D: usize>(comm: &SimpleCommunicator, interface: &Interface<
 }
 
 /// The compliance of the face, by the ranks that share it.
-fn compliance<const D: usize>(solid: &Solid<D>, team: &Rc<Team>) -> Result<Compliance<D>> {
-    match PeriodicColumn::new(solid) {
-        Some(column) => column.compliance(team),
-        None => Compliance::by_schur_complement(&Body::new(SimpleCommunicator::self_comm(), solid)?),
+fn compliance<const D: usize>(solid: &Solid<D>, (team, means): (&Rc<Team>, Means)) -> Result<Compliance<D>> {
+    if let Some(column) = PeriodicColumn::new(solid) {
+        return column.compliance(team);
     }
+    let body = Body::new(SimpleCommunicator::self_comm(), solid)?;
+    if means == Means::Dense {
+        return Compliance::by_schur_complement(&body);
+    }
+    let mut stiffness = body.elastic()?;
+    stiffness.declare_positive_definite()?;
+    Compliance::by_solves(&body, &stiffness, (means, Rc::default()))
 }
 
 /// The whole body with its memory, on this rank alone, or its waves on the ranks that share them.
-fn inside<const D: usize>(solid: &Solid<D>, materials: Materials, team: &Rc<Team>) -> Result<Box<dyn Inside<D>>> {
+fn inside<const D: usize>(
+    solid: &Solid<D>,
+    materials: Materials,
+    (team, means): (&Rc<Team>, Means),
+) -> Result<Box<dyn Inside<D>>> {
     if let Some(column) = PeriodicColumn::new(solid) {
         return Ok(Box::new(Layered::new(solid.clone(), &column, materials.relaxations(), team)));
     }
     let body = Body::new(SimpleCommunicator::self_comm(), solid)?;
     let bulk = materials.bulk(&body, &body.vector()?)?;
-    Ok(Box::new(Sparse::new(bulk, body)?))
+    Ok(Box::new(Sparse::new(bulk, body, means)?))
 }
 
 /// The same where each cell has its own temperature.

@@ -8,6 +8,7 @@ mod error;
 mod factor;
 mod ffi;
 pub mod fixed_text;
+mod inverse;
 mod matrix;
 mod number;
 pub mod object_address;
@@ -17,9 +18,10 @@ mod transient;
 mod vector;
 
 pub use factor::{Cholesky, DenseLu};
+pub use inverse::{Accuracy, Inverse, Multigrid};
 pub use matrix::{Matrix, Pattern};
 pub use partition::partition;
-pub use session::{Session, blas_library, peak_memory, reset_peak_memory};
+pub use session::{Session, blas_library, option, peak_memory, reset_peak_memory};
 pub use transient::{
     Accepted, Attempt, CUT, Implicit, Integrator, Judgement, Linear, Next, Search, Settings, Step, Verdict,
 };

@@ -1,6 +1,6 @@
 //! Starting and stopping MPI and PETSc, in the one order that works.
 
-use std::ffi::CString;
+use std::ffi::{CStr, CString};
 use std::os::raw::{c_char, c_int};
 
 use mpi::environment::Universe;
@@ -8,6 +8,7 @@ use mpi::topology::SimpleCommunicator;
 
 use super::error::{check, collect};
 use super::ffi;
+use super::number::truth;
 use crate::error::{Error, Result};
 
 /// MPI and PETSc, running. One per process; finalises both when dropped.
@@ -73,6 +74,21 @@ impl Session {
             ffi::PetscOptionsLeftRestore(std::ptr::null_mut(), &mut count, &mut names, &mut values);
             list
         }
+    }
+}
+
+/// The value of a PETSc option, such as "-pc_type", that the user gave; none where it was not, or PETSc does not run (`mpjr check`).
+pub fn option(name: &CStr) -> Option<String> {
+    let (mut runs, mut given) = (truth(false), truth(false));
+    let mut value = [0 as c_char; 64];
+    // SAFETY: places for the two truths, and for a text of so many characters with the zero that ends it.
+    unsafe {
+        if ffi::PetscInitialized(&mut runs) != 0 || runs != truth(true) {
+            return None;
+        }
+        let (none, place) = (std::ptr::null_mut(), value.as_mut_ptr());
+        let code = ffi::PetscOptionsGetString(none, std::ptr::null(), name.as_ptr(), place, value.len(), &mut given);
+        (code == 0 && given == truth(true)).then(|| CStr::from_ptr(place).to_string_lossy().into_owned())
     }
 }
 

@@ -135,7 +135,9 @@ pub trait Implicit {
 pub enum Linear {
     /// By FGMRES, with the problem's own solve as preconditioner; the tangent is a matrix.
     Preconditioned,
-    /// The same, with a tangent that is a [`Matrix::shell`].
+    /// By FGMRES with algebraic multigrid, which knows the rigid-body modes of the tangent.
+    Multigrid,
+    /// As [`Self::Preconditioned`], with a tangent that is a [`Matrix::shell`].
     OwnPreconditioned,
     /// By the problem itself, exactly; the tangent is a [`Matrix::shell`].
     Own,
@@ -194,7 +196,7 @@ impl Integrator {
     /// [`Error::Usage`] when PETSc does not take the value of an option.
     pub fn new(comm: &impl AsCommunicator, settings: Settings, jacobian: &mut Matrix) -> Result<Self> {
         let mut ts = null_mut();
-        let shell = settings.linear != Linear::Preconditioned;
+        let shell = !matches!(settings.linear, Linear::Preconditioned | Linear::Multigrid);
         let (mut snes, mut search, mut ksp, mut pc) = (null_mut(), null_mut(), null_mut(), null_mut());
         // SAFETY: places for the handles; those got from TS stay TS's own.
         unsafe {
@@ -227,6 +229,7 @@ impl Integrator {
             let (method, reduction, most) = match settings.linear {
                 // One iteration, or two.
                 Linear::Preconditioned | Linear::OwnPreconditioned => (c"fgmres", 1e-10, MOST_BY_AN_INVERSE),
+                Linear::Multigrid => (c"fgmres", 1e-10, MOST_KRYLOV),
                 Linear::Own => (c"preonly", 1e-9, MOST_KRYLOV),
                 Linear::OwnIterative(reduction) => (c"fgmres", reduction, MOST_KRYLOV),
             };
@@ -236,7 +239,8 @@ impl Integrator {
                 check(ffi::SNESKSPSetUseEW(snes, truth(true)))?;
                 check(ffi::SNESKSPSetParametersEW(snes, 2, most, most, -2.0, -2.0, -2.0, -2.0))?;
             }
-            check(ffi::PCSetType(pc, SHELL.as_ptr()))?;
+            let preconditioner = if settings.linear == Linear::Multigrid { c"gamg" } else { SHELL };
+            check(ffi::PCSetType(pc, preconditioner.as_ptr()))?;
             check(ffi::TSSetFromOptions(ts)).map_err(refused)?;
             if !integrator.asks_for_solves()? {
                 let mut asked = 0;

@@ -80,6 +80,8 @@ pub enum Way {
     /// By conjugate gradients on the pressures, each run of which is a step of Newton's method: see
     /// [`traction::pressures`]. Of a flat periodic face without friction under an indenter whose place is given.
     Pressures,
+    /// By Newton's method and GMRES, where no matrix of the body is held and a product with C is a solve with it.
+    Products,
 }
 
 /// What [`Condensed::along`] gives.
@@ -111,7 +113,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
             scale: 0.0,
             stage: None,
             linear: Linear::default(),
-            reuse: components > LARGE_FACE,
+            reuse: components > LARGE_FACE || way == Way::Products,
             recoveries: 0,
             transforms,
             freedom,

@@ -28,7 +28,7 @@ pub use driver::{Counts, Driver, MAX_NEWTON, MAX_NEWTON_OF_JUMPS, Position};
 pub use heat::{Convection, Heat, Heated, Medium, Thermal};
 pub use monolithic::{Bordered, Monolithic};
 pub use response::{
-    Compliance, Coupled, Following, Inside, Interior, Layered, Moving, PeriodicColumn, Relaxation, Relaxations,
+    Compliance, Coupled, Following, Inside, Interior, Layered, Means, Moving, PeriodicColumn, Relaxation, Relaxations,
     Remembering, Response, Sparse, Transform, Travelling,
 };
 

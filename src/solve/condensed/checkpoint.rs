@@ -5,7 +5,7 @@ use nalgebra::SVector;
 use super::super::response::Response;
 use super::super::traction::{Factor, Linearised};
 use super::linear::Linear;
-use super::{Condensed, write};
+use super::{Condensed, Way, write};
 use crate::error::Result;
 use crate::petsc::{Step, Vector};
 use crate::snapshot::{NaturalOrder, Snapshot};
@@ -30,7 +30,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         let Linear { factor, made_for, used, .. } = &self.linear;
         let (Step { t, dt }, secant) = made_for.unwrap_or((Step { t: 0.0, dt: 0.0 }, 0.0));
         snapshot.put("condensed", vec![self.scale, t, dt, secant, *used as f64]);
-        if let Some(factor) = factor.as_ref().filter(|_| self.reuse) {
+        if let Some(factor) = factor.as_ref().filter(|_| self.reuse && self.way == Way::Newton) {
             snapshot.put("factor", factor.points().iter().flat_map(Linearised::numbers).collect());
         }
         Ok(())

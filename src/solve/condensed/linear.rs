@@ -3,13 +3,16 @@
 use nalgebra::SVector;
 
 use super::super::response::Response;
-use super::super::traction::{self, Border, Factor, Fourier, Linearised};
+use super::super::traction::{self, Behind, Border, Factor, Fourier, Linearised, Pointwise};
 use super::{Condensed, LARGE_PERIODIC_FACE, Way, tractions, unprepared, write};
 use crate::error::{Error, Result};
 use crate::petsc::{Step, Vector};
 
 /// More applications of an old factor than this in one solve, and a new one is made.
 const STALE_AFTER: usize = 10;
+
+/// More unknowns than this, and a preconditioner is no dense factor of what the body does about: that of so many takes a second.
+const MOST_NEARLY: usize = 2400;
 
 /// Newton's linear system.
 #[derive(Default)]
@@ -19,6 +22,7 @@ pub(super) struct Linear<const D: usize> {
     pub border: Option<Border<D>>,
     pub factor: Option<Factor<D>>,
     pub fourier: Option<Fourier>,
+    pub pointwise: Option<Pointwise<D>>,
     /// The step that the factor was made for, and the secant.
     pub made_for: Option<(Step, f64)>,
     /// Solves since the last tangent.
@@ -37,6 +41,10 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         let points = stage.trial.linearised(&stage.sites);
         let Some(behind) = self.behind() else { return Ok(()) };
         let border = self.with_laws(stage, |laws| Border::new(&stage.sites, (&stage.trial, &points), laws.held));
+        if self.way == Way::Products {
+            self.linear = Linear { border, ..nearly(&behind, points) };
+            return Ok(());
+        }
         let Linear { factor, made_for, used, .. } = &self.linear;
         let points_are_nodes = !self.face.interface.points().share_nodes();
         let everywhere = self.face.interface.points().everywhere();
@@ -81,7 +89,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
             return Ok(());
         };
         let dt = tractions::<D>(v)?;
-        let mut values = traction::product(&self.linear.points, &dt, &behind.moves(&dt)?);
+        let mut values = traction::product(&self.linear.points, &dt, &behind.moves_roughly(&dt)?);
         let mut last = self.last(v)?;
         if let Some(border) = &self.linear.border {
             last = border.product(&stage.sites, (&dt, last), &mut values);
@@ -106,7 +114,11 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
                 fourier.solve(behind.compliance, points, &mut solved, &mut Vec::new())?;
                 Ok(solved.chunks_exact(D).map(SVector::from_column_slice).collect())
             }
-            (Linear { factor: Some(factor), .. }, Some(behind)) => factor.solve(right, |t| behind.moves(t)),
+            (Linear { pointwise: Some(pointwise), points, .. }, _) => Ok(pointwise.solve(points, right)),
+            (Linear { factor: Some(factor), points, .. }, Some(behind)) => factor.solve(right, |t| match self.way {
+                Way::Products => Ok(behind.nearly_moved(t, &active(points))),
+                Way::Newton | Way::Pressures => behind.moves(t),
+            }),
             _ => Ok(vec![SVector::repeat(f64::NAN); right.len()]),
         };
         let solution = match (&self.linear.border, &self.stage) {
@@ -166,4 +178,19 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         let away = trial.tractions.iter().zip(sites).zip(pressures).map(|((t, site), p)| t + site.normal * p);
         write(x, away)
     }
+}
+
+/// The system of these points with a preconditioner that asks for no product: by what the body does about.
+fn nearly<const D: usize>(behind: &Behind<'_, D>, points: Vec<Linearised<D>>) -> Linear<D> {
+    let factor = match Factor::order(&points) <= MOST_NEARLY {
+        true => Factor::new(points.clone(), &|j, rows| behind.influence(j, rows)).ok(),
+        false => None,
+    };
+    let pointwise = factor.is_none().then(|| Pointwise::new(&points, |i| behind.influence(i, &[i])[0]));
+    Linear { points, factor, pointwise, ..Linear::default() }
+}
+
+/// Which points are in contact.
+fn active<const D: usize>(points: &[Linearised<D>]) -> Vec<usize> {
+    points.iter().enumerate().filter(|(_, point)| point.active).map(|(i, _)| i).collect()
 }

@@ -2,17 +2,19 @@
 //!
 //! u = C f for forces f on the face alone: C is the inverse of the Schur complement of the stiffness onto the face.
 
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 use std::ops::Range;
+use std::rc::Rc;
 
 use nalgebra::SMatrix;
 
 use super::super::body::Body;
+use super::applied::{Applied, Means};
 use super::kernel::Kernel;
 use super::transform::Transform;
 use crate::error::{Error, Result};
 use crate::mesh::Face;
-use crate::petsc::Cholesky;
+use crate::petsc::{Accuracy, Cholesky, Matrix};
 
 /// C over the components of each face node, m per N/m (m/N in space); zero rows and columns where a component is held.
 pub struct Compliance<const D: usize> {
@@ -39,6 +41,8 @@ enum Form<const D: usize> {
         /// The columns of the components of the first node, where entries are asked for.
         first: OnceCell<[Vec<f64>; D]>,
     },
+    /// Known by its products.
+    Applied(Box<Applied<D>>),
 }
 
 impl<const D: usize> Compliance<D> {
@@ -53,6 +57,26 @@ impl<const D: usize> Compliance<D> {
         stiffness.declare_positive_definite()?;
         let (_, inverse) = Cholesky::with_inverse_schur(&stiffness, &kept)?;
         Ok(Self::from_free(body, &inverse))
+    }
+
+    /// By solves with a body that this rank holds whole, one a product, which are counted; its stiffness must have been declared positive
+    /// definite.
+    pub fn by_solves(body: &Body<D>, stiffness: &Matrix, counted: (Means, Rc<Cell<usize>>)) -> Result<Self> {
+        let applied = Applied::new(body, stiffness, counted)?;
+        Ok(Self::new(D * body.mesh().face.count(), Form::Applied(Box::new(applied))))
+    }
+
+    /// What applies it where no matrix is held.
+    pub fn applied(&self) -> Option<&Applied<D>> {
+        match &self.form {
+            Form::Applied(applied) => Some(applied),
+            Form::Dense { .. } | Form::Periodic { .. } => None,
+        }
+    }
+
+    /// How the body answers; [`Means::Dense`] of a periodic layer, too.
+    pub fn means(&self) -> Means {
+        self.applied().map_or(Means::Dense, Applied::means)
     }
 
     /// The face's components that are not held: their place on the face and their row in the body.
@@ -126,7 +150,7 @@ impl<const D: usize> Compliance<D> {
     pub fn waves(&self) -> Option<(&Transform<D>, &Kernel<D>)> {
         match &self.form {
             Form::Periodic { transform, kernel, .. } => Some((transform, kernel)),
-            Form::Dense { .. } => None,
+            Form::Dense { .. } | Form::Applied(_) => None,
         }
     }
 
@@ -135,6 +159,7 @@ impl<const D: usize> Compliance<D> {
         match &self.form {
             Form::Dense { values, .. } => values[place * self.order + place] == 0.0,
             Form::Periodic { .. } => false,
+            Form::Applied(applied) => applied.is_held(place),
         }
     }
 
@@ -150,7 +175,7 @@ impl<const D: usize> Compliance<D> {
         }
     }
 
-    /// One entry.
+    /// One entry; where no matrix is held, about so.
     fn entry(&self, row: usize, column: usize) -> f64 {
         match &self.form {
             Form::Dense { values, .. } => values[column * self.order + row],
@@ -158,6 +183,7 @@ impl<const D: usize> Compliance<D> {
                 let first = first.get_or_init(|| columns_of_a_node(transform, kernel));
                 first[column % D][D * transform.apart(row / D, column / D) + row % D]
             }
+            Form::Applied(applied) => applied.model().block(row / D, column / D)[(row % D, column % D)],
         }
     }
 
@@ -187,6 +213,11 @@ impl<const D: usize> Compliance<D> {
                         .for_each(|(more, u)| components.clone().for_each(|component| u[component] += more[component]));
                 }
             }
+            Form::Applied(applied) => {
+                let mut all = vec![0.0; self.order];
+                forces.for_each(|(place, force)| all[place] += force);
+                u.iter_mut().zip(applied.displaced(&all, Accuracy::Whole)?).for_each(|(u, more)| *u += more);
+            }
         }
         Ok(())
     }
@@ -209,7 +240,7 @@ impl<const D: usize> Compliance<D> {
         self.waves().map_or(0, |(transform, _)| transform.counted())
     }
 
-    /// The displacement of node i under unit forces on node j, m per N/m.
+    /// The displacement of node i under unit forces on node j, m per N/m; where no matrix is held, about so.
     pub fn block(&self, i: usize, j: usize) -> SMatrix<f64, D, D> {
         match &self.form {
             Form::Periodic { own, .. } if i == j => *own,
@@ -219,6 +250,7 @@ impl<const D: usize> Compliance<D> {
                 let source = D * transform.apart(i, j);
                 SMatrix::from_fn(|row, k| first[k][source + row])
             }
+            Form::Applied(applied) => applied.model().block(i, j),
         }
     }
 
@@ -235,6 +267,7 @@ impl<const D: usize> Compliance<D> {
                 (0..D).map(|k| checkerboard(values, (self.order, D), signs, k)).fold(f64::INFINITY, f64::min)
             }
             Form::Periodic { transform, kernel, .. } => transform.team().least(kernel.smallest()),
+            Form::Applied(applied) => applied.smallest(),
         })
     }
 }

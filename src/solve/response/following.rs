@@ -87,7 +87,9 @@ impl<const D: usize> Response<D> for Following<D> {
     fn work(&self) -> Work {
         let memory_fields = self.relaxation.as_ref().map_or(0, |relaxation| relaxation.arms.len());
         let transforms = self.compliance.as_ref().map_or(0, |compliance| compliance.transforms());
-        Work { memory_fields, transforms, ..Work::default() }
+        let applied = self.compliance.as_ref().and_then(|compliance| compliance.applied());
+        let (factorisations, solves) = applied.map_or((0, 0), |applied| (1, applied.solves()));
+        Work { memory_fields, transforms, factorisations, solves, ..Work::default() }
     }
 
     fn keep_account(&mut self, layout: &Vector) -> Result<()> {

@@ -5,9 +5,10 @@ use mpi::traits::Communicator;
 
 use super::super::BulkFields;
 use super::super::body::{Body, Solid};
+use super::applied::Means;
 use super::layered::{Below, PeriodicColumn};
 use crate::error::Result;
-use crate::petsc::{Cholesky, Matrix, Vector};
+use crate::petsc::{Accuracy, Inverse, Matrix, Vector};
 
 /// A body whose interior follows its face: u_I = H u_G.
 pub struct Interior<const D: usize> {
@@ -15,6 +16,7 @@ pub struct Interior<const D: usize> {
     solid: Solid<D>,
     /// Of a periodic layer.
     column: Option<PeriodicColumn<D>>,
+    means: Means,
     /// Made when first asked for: most scenes never do.
     recovery: Option<(Body<D>, Extension<D>)>,
 }
@@ -27,10 +29,10 @@ enum Extension<const D: usize> {
     Sparse(Inner),
 }
 
-/// K u_I = -K_IG u_G, factorised and distributed.
+/// K u_I = -K_IG u_G, distributed, and solved as the body is.
 struct Inner {
     stiffness: Matrix,
-    factor: Cholesky,
+    inverse: Inverse,
     /// Per component of the face, its local row where this rank owns it.
     rows: Vec<Option<usize>>,
     /// What stands on the diagonal of the held rows.
@@ -39,8 +41,12 @@ struct Inner {
 
 impl<const D: usize> Interior<D> {
     /// The interior of a solid, with its column where that is a periodic layer; costs nothing until [`Self::fields`].
-    pub fn new(comm: &SimpleCommunicator, solid: Solid<D>, column: Option<PeriodicColumn<D>>) -> Self {
-        Self { comm: comm.duplicate(), solid, column, recovery: None }
+    pub fn new(
+        comm: &SimpleCommunicator,
+        solid: Solid<D>,
+        (column, means): (Option<PeriodicColumn<D>>, Means),
+    ) -> Self {
+        Self { comm: comm.duplicate(), solid, column, means, recovery: None }
     }
 
     /// The fields of the body for given displacements and effective displacements (mu_0 u + sum mu_i z_i; none = the
@@ -52,7 +58,7 @@ impl<const D: usize> Interior<D> {
                 let body = Body::new(self.comm.duplicate(), &self.solid)?;
                 let extension = match &self.column {
                     Some(column) => Extension::Waves(Below::new(column)?),
-                    None => Extension::Sparse(Inner::new(&body)?),
+                    None => Extension::Sparse(Inner::new(&body, self.means)?),
                 };
                 place.insert((body, extension))
             }
@@ -77,7 +83,7 @@ impl<const D: usize> Extension<D> {
 }
 
 impl Inner {
-    fn new<const D: usize>(body: &Body<D>) -> Result<Self> {
+    fn new<const D: usize>(body: &Body<D>, means: Means) -> Result<Self> {
         let (stiffness, diagonal) = (body.elastic()?, body.cells().diagonal());
         let numbering = body.numbering();
         let components = body.mesh().face.unknown.iter().flat_map(|&unknown| (0..D).map(move |i| (unknown, i)));
@@ -88,8 +94,8 @@ impl Inner {
         let mut inner = stiffness.duplicate()?;
         inner.fix(&owned, diagonal)?;
         inner.declare_positive_definite()?;
-        let factor = Cholesky::new(&inner)?;
-        Ok(Self { stiffness, factor, rows, diagonal })
+        let inverse = means.inverse(body.comm(), body, &inner)?;
+        Ok(Self { stiffness, inverse, rows, diagonal })
     }
 
     fn extend<const D: usize>(&self, face: &[f64], body: &Body<D>) -> Result<Vector> {
@@ -98,7 +104,7 @@ impl Inner {
         self.stiffness.multiply(&values, &mut right)?;
         right.scale(-1.0)?;
         self.put(&face.iter().map(|value| self.diagonal * value).collect::<Vec<_>>(), &mut right)?;
-        self.factor.solve(&right, &mut values)?;
+        self.inverse.solve(&right, &mut values, Accuracy::Whole)?;
         Ok(values)
     }
 

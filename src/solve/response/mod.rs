@@ -3,12 +3,14 @@
 //! The bulk is linear, so that at a given step length the face's displacements are those that it would have without contact
 //! and what the contact forces add through a compliance: u = u_free + C f/c.
 
+mod applied;
 mod compliance;
 mod coupled;
 mod following;
 mod interior;
 mod kernel;
 mod layered;
+mod model;
 mod remembering;
 mod sparse;
 mod transform;
@@ -21,6 +23,7 @@ use crate::error::Result;
 use crate::petsc::{Gather, Step, Vector};
 use crate::snapshot::{NaturalOrder, Snapshot};
 
+pub use applied::Means;
 pub use compliance::Compliance;
 pub use coupled::Coupled;
 pub use following::{Following, Relaxation};

@@ -1,13 +1,17 @@
-//! A body with memory of any shape: by a sparse factorisation, two solves per step.
+//! A body with memory of any shape: by a sparse factorisation, or multigrid, two solves per step beside the products with C.
+
+use std::cell::Cell;
+use std::rc::Rc;
 
 use super::super::body::Body;
 use super::super::{BulkFields, Work};
+use super::applied::Means;
 use super::compliance::Compliance;
 use super::remembering::{Inside, Solvers};
 use crate::bulk::Bulk;
 use crate::energy::BodyEnergy;
 use crate::error::{Error, Result};
-use crate::petsc::{Cholesky, Matrix, Step, Vector};
+use crate::petsc::{Accuracy, Cholesky, Matrix, Step, Vector};
 use crate::snapshot::Snapshot;
 
 /// The whole body, on the one rank that solves it.
@@ -16,6 +20,7 @@ pub struct Sparse<const D: usize> {
     body: Body<D>,
     rows: FaceRows<D>,
     kept: Vec<i32>,
+    means: Means,
     tangent: Matrix,
     /// The accepted displacements, m.
     u: Vector,
@@ -27,17 +32,42 @@ pub struct Sparse<const D: usize> {
     zero: Vector,
     work: Vector,
     done: Work,
+    /// Solves so far.
+    solves: Rc<Cell<usize>>,
 }
 
 /// A at one step length.
 struct Solver<const D: usize> {
-    factor: Cholesky,
+    /// None where C is known by its products: then these have the inverse.
+    factor: Option<Cholesky>,
     compliance: Compliance<D>,
+}
+
+impl<const D: usize> Solver<D> {
+    fn new(body: &Body<D>, tangent: &Matrix, kept: &[i32], counted: (Means, Rc<Cell<usize>>)) -> Result<Self> {
+        if counted.0 != Means::Dense {
+            return Ok(Self { factor: None, compliance: Compliance::by_solves(body, tangent, counted)? });
+        }
+        let (factor, inverse) = Cholesky::with_inverse_schur(tangent, kept)?;
+        Ok(Self { factor: Some(factor), compliance: Compliance::from_free(body, &inverse) })
+    }
+
+    /// u = A^-1 b
+    fn solve(&self, b: &Vector, u: &mut Vector, solves: &Cell<usize>) -> Result<()> {
+        match (&self.factor, self.compliance.applied()) {
+            (Some(factor), _) => {
+                solves.set(solves.get() + 1);
+                factor.solve(b, u)
+            }
+            (None, Some(applied)) => applied.solve(b, u, Accuracy::Whole),
+            (None, None) => Err(unprepared()),
+        }
+    }
 }
 
 impl<const D: usize> Sparse<D> {
     /// At rest; both made for this rank alone.
-    pub fn new(bulk: Bulk, body: Body<D>) -> Result<Self> {
+    pub fn new(bulk: Bulk, body: Body<D>, means: Means) -> Result<Self> {
         let rows = FaceRows::new(&body);
         let kept = Compliance::free_rows(&body).into_iter().map(|(_, row)| row).collect();
         let mut tangent = bulk.new_tangent()?;
@@ -50,11 +80,13 @@ impl<const D: usize> Sparse<D> {
             zero: vector()?,
             work: vector()?,
             done: Work::default(),
+            solves: Rc::default(),
             face: vec![0.0; rows.components()],
             solvers: Solvers::new(),
             bulk,
             rows,
             kept,
+            means,
             tangent,
             body,
         })
@@ -63,20 +95,18 @@ impl<const D: usize> Sparse<D> {
 
 impl<const D: usize> Inside<D> for Sparse<D> {
     fn prepare(&mut self, step: Step) -> Result<()> {
-        let Self { solvers, bulk, tangent, kept, body, done, .. } = self;
+        let Self { solvers, bulk, tangent, kept, means, body, done, solves, .. } = self;
         solvers.select(step.dt, || {
             done.factorisations += 1;
             bulk.tangent(step.dt, tangent)?;
-            let (factor, inverse) = Cholesky::with_inverse_schur(tangent, kept)?;
-            Ok(Solver { factor, compliance: Compliance::from_free(body, &inverse) })
+            Solver::new(body, tangent, kept, (*means, solves.clone()))
         })?;
         // h_p is y_p at u = 0, where du/dt = -u_n / dt.
         self.work.copy_from(&self.u)?;
         self.work.scale(-1.0 / step.dt)?;
         self.bulk.force(step, &self.zero, &self.work, &mut self.load)?;
         self.load.scale(-1.0)?;
-        self.solvers.current().ok_or_else(unprepared)?.factor.solve(&self.load, &mut self.free)?;
-        self.done.solves += 1;
+        self.solvers.current().ok_or_else(unprepared)?.solve(&self.load, &mut self.free, &self.solves)?;
         self.rows.take(&self.free, &mut self.face)
     }
 
@@ -89,7 +119,7 @@ impl<const D: usize> Inside<D> for Sparse<D> {
     }
 
     fn work(&self) -> Work {
-        Work { memory_fields: self.bulk.memory_vectors(), ..self.done }
+        Work { memory_fields: self.bulk.memory_vectors(), solves: self.solves.get(), ..self.done }
     }
 
     fn keep_account(&mut self) {
@@ -103,8 +133,7 @@ impl<const D: usize> Inside<D> for Sparse<D> {
     /// u = A^-1 (b + P f), and the arms with it.
     fn commit(&mut self, step: Step, forces: &[f64]) -> Result<()> {
         self.rows.load(forces, &mut self.load)?;
-        self.solvers.current().ok_or_else(unprepared)?.factor.solve(&self.load, &mut self.u)?;
-        self.done.solves += 1;
+        self.solvers.current().ok_or_else(unprepared)?.solve(&self.load, &mut self.u, &self.solves)?;
         self.bulk.commit(step, &self.u)
     }
 

@@ -11,6 +11,7 @@ use crate::error::Result;
 use crate::friction::{Circumstances, Law};
 use crate::interface::{Interface, Point};
 use crate::loading::Placement;
+use crate::petsc::Accuracy;
 
 /// A compliance over its secant, m per N/m, before the points of a face.
 #[derive(Clone, Copy)]
@@ -45,11 +46,13 @@ impl<const D: usize> Behind<'_, D> {
     }
 
     /// The displacements of the nodes under forces on them, of each no more than the `components`, m.
-    fn displacements(&self, forces: Vec<f64>, components: Range<usize>) -> Result<Vec<f64>> {
+    fn displacements(&self, forces: Vec<f64>, (components, accuracy): (Range<usize>, Accuracy)) -> Result<Vec<f64>> {
         let mut u = if self.compliance.waves().is_some() {
             let mut u = forces;
             self.compliance.displace(&mut u, components)?;
             u
+        } else if let Some(applied) = self.compliance.applied() {
+            applied.displaced(&forces, accuracy)?
         } else {
             let mut u = vec![0.0; forces.len()];
             self.compliance.add_displacements(forces.into_iter().enumerate(), &mut u, components)?;
@@ -67,15 +70,36 @@ impl<const D: usize> Behind<'_, D> {
     /// The displacements of the nodes under tractions, from what they do without, m, and the forces, N/m.
     pub fn displaced(&self, tractions: &[SVector<f64, D>], free: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         let forces = self.forces(tractions);
-        let mut u = self.displacements(forces.clone(), 0..D)?;
+        let mut u = self.displacements(forces.clone(), (0..D, Accuracy::Whole))?;
         u.iter_mut().zip(free).for_each(|(u, free)| *u += free);
         Ok((u, forces))
     }
 
     /// The motion of the points under tractions, m, as far as the laws ask for it.
     pub fn moves(&self, tractions: &[SVector<f64, D>]) -> Result<Vec<SVector<f64, D>>> {
+        self.moved(tractions, Accuracy::Whole)
+    }
+
+    /// The same, no further than the direction of a Newton step asks for.
+    pub fn moves_roughly(&self, tractions: &[SVector<f64, D>]) -> Result<Vec<SVector<f64, D>>> {
+        self.moved(tractions, Accuracy::Rough)
+    }
+
+    fn moved(&self, tractions: &[SVector<f64, D>], accuracy: Accuracy) -> Result<Vec<SVector<f64, D>>> {
         let components = if self.is_normal_alone() { D - 1..D } else { 0..D };
-        Ok(self.motions(&self.displacements(self.forces(tractions), components)?, tractions))
+        Ok(self.motions(&self.displacements(self.forces(tractions), (components, accuracy))?, tractions))
+    }
+
+    /// About the motion of the points `rows`, of others none, under tractions on some points: where no matrix of the body is held, without
+    /// asking it.
+    pub fn nearly_moved(&self, tractions: &[SVector<f64, D>], rows: &[usize]) -> Vec<SVector<f64, D>> {
+        let mut moved = vec![SVector::zeros(); tractions.len()];
+        for (j, t) in tractions.iter().enumerate().filter(|(_, t)| t.iter().any(|t| *t != 0.0)) {
+            for (&i, influence) in rows.iter().zip(self.influence(j, rows)) {
+                moved[i] += influence * t;
+            }
+        }
+        moved
     }
 
     /// What displacements of the nodes are at the points under tractions, with what gives way where one direction is held.
@@ -188,6 +212,8 @@ impl<const D: usize> Behind<'_, D> {
             self.compliance.waves().is_some() && interface.points().are_flat() && !interface.points().share_nodes();
         let moduli = |i: usize| self.moduli(i, interface.penalty());
         let first = alike.then(|| moduli(0));
+        // What a solve leaves is as good as round-off.
+        let digits = self.compliance.applied().map_or(1.0, |applied| (applied.remainder() / f64::EPSILON).max(1.0));
         let site = |(i, point): (usize, &Point<D>)| {
             let past = interface.points().at(i, accepted.displacement());
             let elastic = interface.friction().map_or(SVector::zeros(), |law| interface.states()[i].elastic(law));
@@ -206,8 +232,8 @@ impl<const D: usize> Behind<'_, D> {
                 moduli: first.unwrap_or_else(|| moduli(i)).above(falls(slid, temperature)).above_adhesion(law),
                 damping: None,
                 lengths: [
-                    moved.max(approach.abs()).max(height.min(2.0 * approach.abs())),
-                    moved.max(past.norm()).max(way.norm()),
+                    moved.max(approach.abs()).max(height.min(2.0 * approach.abs())) * digits,
+                    moved.max(past.norm()).max(way.norm()) * digits,
                 ],
             }
         };

@@ -107,6 +107,12 @@ impl<const D: usize> Factor<D> {
         Ok(self.points.iter().zip(&y).map(dragged).collect())
     }
 
+    /// How many unknowns a factor of these points has.
+    pub fn order(points: &[Linearised<D>]) -> usize {
+        let of = |point: &Linearised<D>| if point.slides() { 1 } else { D };
+        points.iter().filter(|point| point.active).map(of).sum()
+    }
+
     /// What it was made of, to be made again from.
     pub fn points(&self) -> &[Linearised<D>] {
         &self.points
