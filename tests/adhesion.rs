@@ -3,7 +3,10 @@
 
 mod common;
 
+use common::msh::write_msh;
 use common::program::{Outcome, Run};
+use common::solid::{Body, Surface};
+use mpjr::mesh::{Layer, Sides};
 
 /// J/m^2; E* = 2 G/(1 - nu), Pa: an elastic layer of 1 m x 1 m, G = 568.498 Pa, nu = 0.3.
 const WORK: f64 = 1.80349e-4;
@@ -236,7 +239,7 @@ fn in_space() {
     assert!((forces[1] / forces[0] - 1.0).abs() < 0.01, "{forces:?}");
 }
 
-/// On two ranks as on one, and from a body with a memory of its own as from one that follows its face: the same pull-off.
+/// On two and on three ranks as on one, and from a body with a memory of its own as from one that follows its face: the same pull-off.
 #[test]
 fn ranks_and_bodies() {
     let phases = phase("in", "approach = 2e-4", 5) + &phase("out", "approach = -3.2e-4", 20);
@@ -244,6 +247,7 @@ fn ranks_and_bodies() {
     let elastic = Run::new(&scene).done().history("normal_force");
     let others = [
         Run::new(&scene).ranks(2).done(),
+        Run::new(&scene).ranks(3).done(),
         Run::new(&scene)
             .set("material.arms=[{weight=1e-9,time=1.0}]")
             .set("material.poisson_rule=\"constant_bulk_modulus\"")
@@ -253,5 +257,65 @@ fn ranks_and_bodies() {
         for (one, other) in elastic.iter().zip(other.history("normal_force")) {
             assert!((one - other).abs() < 1e-7, "{one} {other}");
         }
+    }
+}
+
+/// In steps of a tolerance a flat indenter snaps in and out on a spring where it does in the plane of
+/// [`a_flat_punch_on_a_spring_snaps_in_and_out`], to 1 % of the range, and pulls at most sigma_0 within 1 %; a finer tolerance takes more
+/// steps and comes nearer.
+#[test]
+fn adaptive_steps_find_the_jumps() {
+    let (work, range, gap) = (1e-5, 1e-4, 2e-4);
+    let strength = 2.0 * work / range;
+    let stiffness = 1.0 / (5.0 * range / strength - C0);
+    let mount = format!("[mount]\nnormal = {{ stiffness = {stiffness:?} }}\n");
+    let flat = format!("profile = \"expression\"\nformula = \"{gap:?} + 0*x\"");
+    let off = [1e-2, 2.5e-3].map(|tolerance: f64| {
+        let held = |name: &str, approach: f64| {
+            format!(
+                "[[phase]]\nname = \"{name}\"\nduration = 1.0\ntolerance = {tolerance:?}\napproach = {approach:?}\n"
+            )
+        };
+        let phases = held("in", 3.05e-4) + &held("out", -9.95e-4);
+        let run = Run::new(&scene("[12, 4]", &flat, &(adhesion("bilinear", work, range) + &mount), &phases)).done();
+        let (far, force) = (run.history("mount_normal"), run.history("normal_force"));
+        let touched = (1..force.len()).find(|&i| force[i] != 0.0).unwrap();
+        let least = (0..force.len()).min_by(|&a, &b| force[a].total_cmp(&force[b])).unwrap();
+        let off = [(far[touched] - (gap - range)).abs() / range, (force[least] / -strength - 1.0).abs()];
+        println!("{tolerance}: {} steps, off by {off:?}", force.len() - 1);
+        assert!(run.last("normal_force").abs() < 1e-300);
+        (off, force.len())
+    });
+    assert!(off[1].0.iter().all(|off| *off < 0.02), "{off:?}");
+    assert!(off[1].1 > off[0].1, "{off:?}");
+}
+
+/// On a mesh the pull-off is that of the layer with the same cells, in the plane and in space, to 1e-7 of the greatest force.
+#[test]
+fn meshes() {
+    let phases = phase("in", "approach = 2e-4", 3) + &phase("out", "approach = -3.2e-4", 10);
+    let plane = scene("[48, 8]", PARABOLA, &adhesion("bilinear", WORK, 3.2e-4), &phases)
+        .replace("grading = 8.0\n", "")
+        .replace("\"periodic\"", "\"free\"");
+    let mesh = "mesh={file=\"body.msh\",contact=\"top\",fixed=[\"base\"]}";
+    let space = plane.replace("width = 1.0", "width = [1.0, 0.25]").replace("[48, 8]", "[24, 6, 4]");
+    for (scene, in_space) in [(plane, false), (space, true)] {
+        let layer = Run::new(&scene).done().history("normal_force");
+        let table = scene.find("[material]").unwrap();
+        let run = Run::new(&scene[table..]).set(mesh);
+        let file = run.directory().join("body.msh");
+        match in_space {
+            false => write_msh(&Layer::in_plane([1.0, 1.0], [48, 8], Sides::Free).mesh(), [48, 8], &["body"], &file),
+            true => {
+                let surfaces: [Surface<'_>; 2] = [("top", &|node| node[2] == 0.0), ("base", &|node| node[2] == -1.0)];
+                Body::layer([1.0, 0.25, 1.0], [24, 6, 4]).write(&surfaces, &file);
+            }
+        }
+        let meshed = run.done().history("normal_force");
+        let most = layer.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+        let apart = layer.iter().zip(&meshed).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        println!("{in_space}: apart by {apart:e} of {most}, least {:?}", layer.iter().copied().fold(0.0, f64::min));
+        assert!(apart < 1e-7 * most && layer.len() == meshed.len(), "{apart:e} of {most}");
+        assert!(layer.iter().any(|force| *force < -0.1 * most));
     }
 }

@@ -303,7 +303,7 @@ impl Random {
         let heat = self.heat(&mut materials);
         let friction = self.of(&[None, Some(friction)]);
         let wear = self.wear(exact, matches!(body, Body::Layer(_)), friction.is_some());
-        let adhesion = self.adhesion(exact && wear.is_none() && !adaptive, friction.is_some());
+        let adhesion = self.adhesion(exact && wear.is_none(), friction.is_some());
         Scene {
             title: self.of(&["", "plain", "é \"quoted\" \\ # = [layer]", "'''"]).to_owned(),
             body,

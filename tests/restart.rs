@@ -144,6 +144,7 @@ fn a_signal_to_one_rank_stops_all() {
         (ratio(), "", 0.0, &["--set", "phase.slide.normal_force=0.3"]),
         (bulk(), "", 0.0, &["--set", "wear={of=\"body\",law=\"energy\",coefficient=1e-3}"]),
         (ratio(), "", 0.0, &["--set", "wear={of=\"indenter\",law=\"archard\",coefficient=1e-3}"]),
+        (bulk(), "", 0.0, &["--set", "adhesion={law=\"bilinear\",work=3e-4,range=4e-4}"]),
         (bulk(), "tolerance = 1e-13\nstrategy = \"monolithic\"", 1e-10, &[]),
         (bulk(), "tolerance = 1e-13\nstrategy = \"monolithic\"", 1e-10, &["--set", springs]),
     ] {

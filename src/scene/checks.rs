@@ -320,7 +320,7 @@ fn pull(scene: &Scene) -> Check {
     }
 }
 
-/// A point adheres at a node, by the tractions there, in planned steps; what a closed gap bears is part of friction.
+/// A point adheres at a node, by the tractions there; what a closed gap bears is part of friction.
 fn adhesion(scene: &Scene) -> Check {
     let Some(adhesion) = &scene.adhesion else { return Ok(()) };
     if scene.solver.strategy == Strategy::Monolithic {
@@ -331,9 +331,6 @@ fn adhesion(scene: &Scene) -> Check {
     }
     if scene.wear.is_some() {
         return fail("adhesion", "is not solved beside [wear] yet; leave one of them out");
-    }
-    if scene.is_adaptive() {
-        return fail("adhesion", "is not solved in adaptive steps, which no jump has; give steps in all phases");
     }
     let strength = 2.0 * adhesion.work / adhesion.range;
     if !(strength.is_finite() && (strength / adhesion.range).is_finite() && strength > 0.0) {

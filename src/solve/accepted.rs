@@ -4,7 +4,7 @@ use super::Contact;
 use crate::energy::FaceEnergy;
 use crate::error::{Error, Result};
 use crate::interface::{Exchange, Interface, Rub, State};
-use crate::loading::{DIRECTIONS, Mount, Phase, Placement};
+use crate::loading::{DIRECTIONS, Mount, Phase, Placement, Way};
 use crate::petsc::Step;
 use crate::snapshot::Snapshot;
 
@@ -137,6 +137,19 @@ impl<const D: usize> AcceptedFace<D> {
         mounted.map(|(way, _)| (way.near[1] - way.near[0] - way.rate * going).abs()).fold(face, f64::max)
     }
 
+    /// What the face was to move by, m, in a step to `ends` in which something that adheres jumps: in the first, which pulls at once
+    /// what is within reach, or where a node moves by more than ten times that, by the rates before and by what moves the indenter.
+    pub fn jump(&self, placed: &Placement, ends: &[f64]) -> Option<f64> {
+        const FARTHER: f64 = 10.0;
+        self.interface.adhesion()?;
+        let far = |way: &Way| (way.far[1] - way.far[0]).abs();
+        let led: f64 = self.interface.placement().ways(placed).iter().map(far).sum();
+        let going = self.rate.iter().fold(0.0, |most: f64, rate| most.max(rate.abs())) * placed.dt;
+        let moved = ends.iter().zip(&self.displacement).fold(0.0, |most: f64, (end, u)| most.max((end - u).abs()));
+        let usual = led + going;
+        (self.time == 0.0 || usual > 0.0 && moved > FARTHER * usual).then_some(usual)
+    }
+
     /// Whether the first step of the run is the jump of a dead load.
     fn drops(&self) -> bool {
         self.mounts[0].is_some_and(|mount| mount.drops())
@@ -149,8 +162,11 @@ impl<const D: usize> AcceptedFace<D> {
         states: Vec<State<D>>,
         displacement: Vec<f64>,
     ) -> Result<()> {
-        for ((rate, new), old) in self.rate.iter_mut().zip(&displacement).zip(&self.displacement) {
-            *rate = (new - old) / placement.dt;
+        // A jump says nothing of how the face goes on.
+        if self.jump(&placement, &displacement).is_none() {
+            for ((rate, new), old) in self.rate.iter_mut().zip(&displacement).zip(&self.displacement) {
+                *rate = (new - old) / placement.dt;
+            }
         }
         (self.displacement, self.time, self.dt) = (displacement, time, placement.dt);
         if let Some(rubbed) = &mut self.rubbed {

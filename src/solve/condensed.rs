@@ -332,6 +332,9 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
                 _ => 0,
             };
         }
+        if verdict == 1 && self.falls() {
+            verdict = 0;
+        }
         self.comm.process_at_rank(0).broadcast_into(&mut verdict);
         self.jumps |= verdict == 3;
         match verdict {
@@ -350,7 +353,9 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
         let stage = self.stage.as_ref().ok_or_else(unprepared)?;
         let gone = self.gone(stage, stage.trial.shift);
         let placed = stage.placement.gone_on(&self.face.interface.placement(), gone);
-        Ok(self.face.departure(step, &ends, placed))
+        let departure = self.face.departure(step, &ends, placed);
+        // However short the step, a jump is as long: what is to be located is when it comes.
+        Ok(self.face.jump(&placed, &ends).map_or(departure, |usual| departure.min(usual)))
     }
 
     fn approach_under(&mut self, force: f64, duration: f64) -> Result<f64> {

@@ -146,8 +146,8 @@ impl Draws {
     fn next(&mut self, sample: Sample) -> (Sample, Beside) {
         let [heat, adhesion, wear] = Self::WORDS.map(|word| self.words.iter().any(|asked| asked == word));
         let warm = heat.then(|| Warm::random(&mut self.heat, &sample));
-        let sticky = adhesion.then(|| Sticky::random(&mut self.adhesion));
         let worn = wear.then(|| Worn::random(&mut self.wear, &sample));
+        let sticky = adhesion.then(|| Sticky::random(&mut self.adhesion));
         let sample = match &sticky {
             Some(sticky) => sticky.on(sample),
             None => sample,

@@ -7,7 +7,7 @@
 use nalgebra::SVector;
 
 use super::super::response::Response;
-use super::super::traction::{Along, Damping, Outcome, Site, length};
+use super::super::traction::{Along, Behind, Damping, Outcome, Site, is_stable, length};
 use super::{Condensed, Stage, unprepared};
 use crate::error::{Error, Result};
 use crate::petsc::Vector;
@@ -60,8 +60,8 @@ fn held<const D: usize>(sites: &[Site<D>], at: &Outcome<D>) -> f64 {
 }
 
 impl<const D: usize, R: Response<D>> Condensed<D, R> {
-    /// Whether the next state is to be one on the way of a jump: Newton's method has had its time, knows no way, or has lost the contact
-    /// that a force presses on.
+    /// Whether the next state is to be one on the way of a jump: Newton's method has had its time, knows no way, has ended where nothing
+    /// stays, or has lost the contact that a force presses on.
     pub(super) fn jumps(&self, stage: &Stage<D>, decrement: &Vector) -> Result<bool> {
         if self.face.interface.adhesion().is_none() || stage.sites.is_empty() {
             return Ok(false);
@@ -69,7 +69,24 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         let forced = stage.placement.supports[0].is_some_and(|support| support.is_force());
         let lost = forced && stage.newton > 1 && stage.trial.in_contact() == 0;
         let astray = stage.newton >= PATIENCE || !decrement.view()?.iter().all(|value| value.is_finite());
-        Ok(stage.jump.is_some() || astray || lost)
+        Ok(stage.jump.is_some() || stage.falls || astray || lost)
+    }
+
+    /// Whether Newton's method has ended at a state that does not stay, of which the stage takes note; where a jump has ended is where it
+    /// stays.
+    pub(super) fn falls(&mut self) -> bool {
+        let falls = |(stage, behind): (&Stage<D>, Behind<'_, D>)| {
+            let influence = |j: usize, rows: &[usize]| behind.influence(j, rows);
+            stage.jump.is_none()
+                && !self.rests(stage, &stage.trial)
+                && !self.with_laws(stage, |laws| is_stable(&stage.sites, &stage.trial, laws, &influence))
+        };
+        let adheres = self.face.interface.adhesion().is_some();
+        let falls = adheres && self.stage.as_ref().zip(self.behind()).is_some_and(falls);
+        if let Some(stage) = self.stage.as_mut() {
+            stage.falls = falls;
+        }
+        falls
     }
 
     /// The next state on the way of a jump, which begins at the accepted tractions.

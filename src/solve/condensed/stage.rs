@@ -29,6 +29,8 @@ pub(super) struct Stage<const D: usize> {
     pub newton: usize,
     /// The jump that is followed, where something adheres.
     pub jump: Option<Jump<D>>,
+    /// Whether Newton's method has ended at a state that does not stay.
+    pub falls: bool,
     /// What a point is to slip, m, if it goes on as it did and follows what moves the indenter.
     pub usual: f64,
 }
@@ -51,7 +53,18 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         let still = placement.is_still()
             && self.face.interface.friction().is_none_or(Law::rests)
             && self.team().all_say(self.displaced(&self.accepted)?.0 == self.face.displacement());
-        self.stage = Some(Stage { step, placement, still, sites, trial, first: None, newton: 0, jump: None, usual });
+        self.stage = Some(Stage {
+            step,
+            placement,
+            still,
+            sites,
+            trial,
+            first: None,
+            newton: 0,
+            jump: None,
+            falls: false,
+            usual,
+        });
         Ok(())
     }
 

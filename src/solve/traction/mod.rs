@@ -27,6 +27,7 @@ mod pointwise;
 mod pressed;
 mod search;
 mod sites;
+mod stable;
 mod sweep;
 mod worn;
 
@@ -52,6 +53,7 @@ pub use pointwise::Pointwise;
 pub use pressed::approach_under;
 pub use search::{Along, Operator, Outcome, length, settle};
 pub use sites::Sites;
+pub use stable::is_stable;
 
 /// A point of the contact during a step.
 #[derive(Debug, Clone, PartialEq)]
