@@ -108,7 +108,7 @@ impl<const D: usize> Face<D> {
 }
 
 fn excesses<const D: usize>(outcome: &Outcome<D>) -> Vec<SVector<f64, D>> {
-    outcome.answers.iter().map(|answer| answer.excess).collect()
+    outcome.excess()
 }
 
 /// No wear, and wear so quick that the depth is a third of the slip times the pressure.
@@ -184,7 +184,7 @@ fn pulled<const D: usize>(face: &Face<D>, laws: Laws<'_>, draw: &mut Draw) -> us
     for (difference, exact) in face.differences(&dt, laws).iter().zip(&exact) {
         assert!((difference - exact).norm() < 2e-6 * exact.norm().max(1.0), "{laws:?}");
     }
-    at.answers.iter().filter(|answer| answer.active && answer.gap > 0.0).count()
+    at.answers.iter().filter(|(_, answer)| answer.active && answer.gap > 0.0).count()
 }
 
 /// J dt against central differences of G, and J (J^-1 b) = b, for every law and with no penetration.
@@ -291,7 +291,8 @@ fn solution<const D: usize>() {
             let operator: Operator<'_, D> = (&|j, rows| face.column(j, rows), &|t| Ok(face.moves(t)));
             let end = settle(&face.sites, from, laws, operator, 60).unwrap();
             assert!(end.norm() <= end.noise(), "{laws:?} {rho}: {:e}", end.norm());
-            for ((site, answer), motion) in face.sites.iter().zip(&end.answers).zip(&end.motions) {
+            for (i, answer) in &end.answers {
+                let (site, motion) = (&face.sites[*i], &end.motions[*i]);
                 let state = answer.state(site, motion, laws, &State::default());
                 let at = site.circumstances(state.pressure, laws);
                 let bound = laws.friction.map_or(0.0, |law| law.bound(at, answer.slip.norm()).value);

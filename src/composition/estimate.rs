@@ -17,7 +17,7 @@ use crate::solve::Means;
 const PROGRAM: f64 = 5.7e7;
 /// Per node of a periodic face in space, with friction and without: the points and their states, what of a step is tried, GMRES; and for
 /// each arm. Measured with 128, 256 and 512 nodes a side; those below with 128.
-const FACE_NODE: [f64; 2] = [3700.0, 2400.0];
+const FACE_NODE: [f64; 2] = [1650.0, 1550.0];
 const FACE_ARM: f64 = 30.0;
 /// Per node of a periodic layer in space whose interior has a memory: its elimination at two step lengths, and what is beside the arms;
 /// for each part that relaxes by itself; for each arm.
@@ -25,7 +25,7 @@ const WAVE_NODE: f64 = 330.0;
 const WAVE_PART: f64 = 72.0;
 const WAVE_ARM: f64 = 24.5;
 /// s per step and node of such a face with friction and without, and per step and node of such a layer.
-const FACE_STEP: [f64; 2] = [5e-6, 1.5e-6];
+const FACE_STEP: [f64; 2] = [4e-6, 1.5e-6];
 const WAVE_STEP: f64 = 5e-8;
 /// s per cube of the components of a face, for its dense compliance.
 const FACE_INVERSE: f64 = 4e-11;

@@ -195,6 +195,7 @@ fn condensed<const D: usize, R: Response<D> + 'static>(
     let linear = match components > if periodic { LARGE_PERIODIC_FACE } else { LARGE_FACE } {
         _ if way == Way::Pressures => Linear::Own,
         _ if way == Way::Products => Linear::OwnIterative(1e-2),
+        true if periodic && !points.share_nodes() => Linear::Own,
         // Where a product costs next to nothing, Newton's method need not wait for exact steps; a step from a guess that is a hundredth off
         // should end below its tolerance.
         true if components <= LARGE_FACE => Linear::OwnIterative(1e-7),

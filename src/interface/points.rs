@@ -204,11 +204,7 @@ impl<const D: usize> Points<D> {
     /// less than the distance of two points, or where they make no grid. Off the ends of an open face there is nothing. Collective.
     pub fn carried(&self, field: &[SVector<f64, D>], way: Vector2<f64>) -> Option<Vec<SVector<f64, D>>> {
         let axes = &self.grid.as_ref()?.axes;
-        let spacing = |axis: &Axis| match axis.places.as_slice() {
-            [first, .., last] => (last - first) / (axis.places.len() - 1) as f64,
-            _ => f64::INFINITY,
-        };
-        if !axes.iter().zip(way.iter()).any(|(axis, way)| way.abs() > spacing(axis)) {
+        if !self.is_carried(way) {
             return None;
         }
         let mut carried = field.to_vec();
@@ -216,6 +212,16 @@ impl<const D: usize> Points<D> {
             carried = self.carried_along(&carried, axis, (line, *way));
         }
         Some(carried)
+    }
+
+    /// Whether a way is more than the distance of two points of a grid.
+    pub fn is_carried(&self, way: Vector2<f64>) -> bool {
+        let spacing = |axis: &Axis| match axis.places.as_slice() {
+            [first, .., last] => (last - first) / (axis.places.len() - 1) as f64,
+            _ => f64::INFINITY,
+        };
+        let axes = self.grid.iter().flat_map(|grid| &grid.axes);
+        axes.zip(way.iter()).any(|(axis, way)| way.abs() > spacing(axis))
     }
 
     /// The same along one axis.

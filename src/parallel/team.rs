@@ -123,6 +123,19 @@ impl Team {
         self.all(mine).into_iter().fold([0.0; N], add)
     }
 
+    /// The sums over the ranks of lists of the same length. Collective.
+    pub fn sum_all(&self, mine: Vec<f64>) -> Vec<f64> {
+        let Some(comm) = &self.comm else { return mine };
+        self.note(1, None);
+        let mut all = vec![0.0; mine.len() * comm.size() as usize];
+        comm.all_gather_into(&mine[..], &mut all[..]);
+        let mut sums = vec![0.0; mine.len()];
+        for list in all.chunks_exact(mine.len()) {
+            sums.iter_mut().zip(list).for_each(|(sum, value)| *sum += value);
+        }
+        sums
+    }
+
     /// Totals so far, to add to and then to [`Self::sum`]: the first rank has them, the others begin at nothing.
     pub fn so_far<const N: usize>(&self, totals: [f64; N]) -> [f64; N] {
         if self.is_first() { totals } else { [0.0; N] }

@@ -17,7 +17,7 @@ use nalgebra::SVector;
 
 use super::accepted::AcceptedFace;
 use super::response::{Response, unprepared};
-use super::traction::{self, Answer, Behind, Outcome, Sites};
+use super::traction::{self, Behind, Outcome, Sites};
 use super::{BulkFields, Contact, Tempered, TransientProblem, Work};
 use crate::energy::Energy;
 use crate::error::Result;
@@ -163,10 +163,23 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
 
     /// What a Newton step takes off: tractions, motions, and how far the indenter goes.
     fn along(&self, behind: &Behind<'_, D>, sites: &Sites<D>, decrement: &Vector) -> Result<Gone<D>> {
-        let (gone, decrement) = (self.shift(sites, decrement)?, tractions::<D>(decrement)?);
-        let moves = behind.moves(&decrement)?;
-        let moved = moves.iter().zip(sites).map(|(moved, site)| moved + traction::against(site, &gone)).collect();
+        let (gone, decrement) = (self.shift(sites, decrement)?, tractions::<D>(decrement, self.accepted.len())?);
+        let mut moved = match &self.linear.touching {
+            Some(touching) => touching.moves(behind, sites, &decrement)?,
+            None => behind.moves(&decrement)?,
+        };
+        if gone.iter().any(|gone| *gone != 0.0) {
+            moved.iter_mut().zip(sites).for_each(|(moved, site)| *moved += traction::against(site, &gone));
+        }
         Ok((decrement, moved, gone))
+    }
+
+    /// What may be left of G, in its norm, where the step is solved: see [`TransientProblem::test`].
+    fn allowed(&self) -> f64 {
+        let Some(Stage { trial, first, .. }) = &self.stage else { return 0.0 };
+        let scale = self.scale.max(trial.size());
+        let reference = if scale > 0.0 { scale } else { first.unwrap_or(trial.norm()) };
+        (self.tolerance * reference).max(trial.noise())
     }
 
     /// The displacements of the nodes under tractions, m, and the forces, N/m; on the ranks that have points.
@@ -182,7 +195,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
         let Some((behind, stage)) = self.behind().zip(self.stage.as_ref()) else {
             return Ok(Outcome::none());
         };
-        let (sites, tractions) = (&stage.sites, tractions::<D>(u)?);
+        let (sites, tractions) = (&stage.sites, tractions::<D>(u, self.accepted.len())?);
         let shift = self.shift(sites, u)?;
         // What is tried on the way knows no motion along the face where the laws ask for none.
         let known = self.team().all_say(tractions == stage.trial.tractions && shift == stage.trial.shift);
@@ -227,7 +240,12 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
 
     /// Takes note of a state that was tried, and writes its residual.
     fn tried(&mut self, outcome: Outcome<D>, f: &mut Vector) -> Result<()> {
-        write(f, outcome.answers.iter().map(|answer: &Answer<D>| answer.excess))?;
+        let mut values = f.view_mut()?;
+        values.fill(0.0);
+        for (i, answer) in &outcome.answers {
+            values[D * i..][..D].copy_from_slice(answer.excess.as_slice());
+        }
+        drop(values);
         self.face.interface.count_laws(outcome.in_contact());
         // The force that is too much, over the area; where the place is given, how far the indenter has gone, which is then nowhere.
         let stage = self.stage.as_ref().ok_or_else(unprepared)?;
@@ -316,19 +334,17 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
         let mut verdict = 0;
         let there = |stage: &&Stage<D>| !stage.sites.is_empty() && stage.jump.as_ref().is_none_or(Jump::is_free);
         if let Some(stage) = self.stage.as_ref().filter(there) {
-            let Stage { trial, first, .. } = stage;
+            let trial = &stage.trial;
             let norm = trial.norm();
-            let scale = self.scale.max(trial.size());
-            let reference = if scale > 0.0 { scale } else { first.unwrap_or(norm) };
             let allowed = match iteration {
                 0 if self.rests(stage, trial) => norm,
-                0 => 0.0,
-                _ => self.tolerance * reference,
+                0 => trial.noise(),
+                _ => self.allowed(),
             };
             verdict = match norm {
                 norm if !norm.is_finite() => 2,
-                norm if norm <= allowed.max(trial.noise()) && self.jumped(stage) => 3,
-                norm if norm <= allowed.max(trial.noise()) => 1,
+                norm if norm <= allowed && self.jumped(stage) => 3,
+                norm if norm <= allowed => 1,
                 _ => 0,
             };
         }
@@ -345,7 +361,7 @@ impl<const D: usize, R: Response<D>> TransientProblem for Condensed<D, R> {
     }
 
     fn departure(&mut self, step: Step, u: &Vector) -> Result<f64> {
-        let mut ends = self.displaced(&tractions::<D>(u)?)?.0;
+        let mut ends = self.displaced(&tractions::<D>(u, self.accepted.len())?)?.0;
         ends.resize(self.face.displacement().len(), 0.0);
         if !self.team().is_parted() {
             self.comm.process_at_rank(0).broadcast_into(&mut ends[..]);

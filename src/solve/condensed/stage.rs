@@ -27,6 +27,8 @@ pub(super) struct Stage<const D: usize> {
     pub first: Option<f64>,
     /// Newton steps so far.
     pub newton: usize,
+    /// The norm of G at the last linear system, and the share of its right side that it was solved to.
+    pub solved: Option<[f64; 2]>,
     /// The jump that is followed, where something adheres.
     pub jump: Option<Jump<D>>,
     /// Whether Newton's method has ended at a state that does not stay.
@@ -61,6 +63,7 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
             trial,
             first: None,
             newton: 0,
+            solved: None,
             jump: None,
             falls: false,
             usual,
@@ -110,12 +113,17 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
     pub(super) fn ends(&self, stage: &Stage<D>, outcome: &Outcome<D>) -> (Vec<SVector<f64, D>>, Vec<State<D>>) {
         let rests = self.rests(stage, outcome);
         let met = if rests { outcome.tractions.clone() } else { outcome.met(&stage.sites) };
-        let ends = stage.sites.iter().zip(&outcome.answers).zip(&outcome.motions).zip(self.face.interface.states());
+        let ends = stage.sites.iter().zip(&outcome.motions).zip(self.face.interface.states()).enumerate();
+        let mut answers = outcome.answers.iter().peekable();
         let states = self.with_laws(stage, |laws| {
-            let state = |(((site, answer), motion), before): (((&Site<D>, &Answer<D>), _), &State<D>)| match rests {
-                true if answer.active => before.at_rest(),
-                _ => answer.state(site, motion, laws, before),
-            };
+            let state =
+                |(i, ((site, motion), before)): (usize, ((&Site<D>, &SVector<f64, D>), &State<D>))| match answers
+                    .next_if(|(point, _)| *point == i)
+                {
+                    Some((_, answer)) if answer.active && rests => before.at_rest(),
+                    Some((_, answer)) => answer.state(site, motion, laws, before),
+                    None => Answer::none(site, motion).state(site, motion, laws, before),
+                };
             ends.map(state).collect()
         });
         (met, states)

@@ -63,9 +63,9 @@ impl<const D: usize, R: Response<D>> Condensed<D, R> {
     }
 }
 
-/// The tractions in a vector of the unknowns, on this rank.
-pub(super) fn tractions<const D: usize>(u: &Vector) -> Result<Vec<SVector<f64, D>>> {
-    Ok(u.view()?.chunks_exact(D).map(SVector::from_column_slice).collect())
+/// The tractions of so many points in a vector of the unknowns, on this rank.
+pub(super) fn tractions<const D: usize>(u: &Vector, points: usize) -> Result<Vec<SVector<f64, D>>> {
+    Ok(u.view()?.chunks_exact(D).take(points).map(SVector::from_column_slice).collect())
 }
 
 /// Writes them.

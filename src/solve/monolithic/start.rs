@@ -118,9 +118,9 @@ impl<const D: usize> Monolithic<D> {
         let outcome = traction::start(&sites, first, laws, operator, f64::EPSILON)?;
         let (mut displacements, forces) = behind.displaced(&outcome.met(&sites), &free)?;
         if let Some(penalty) = interface.penalty() {
-            for (i, (site, answer)) in sites.iter().zip(&outcome.answers).enumerate().filter(|(_, (_, a))| a.active) {
-                if let [(node, _)] = interface.points().shares(i) {
-                    let motion = answer.motion(site, penalty) - outcome.against(site, i);
+            for (i, answer) in outcome.answers.iter().filter(|(_, answer)| answer.active) {
+                if let [(node, _)] = interface.points().shares(*i) {
+                    let motion = answer.motion(&sites[*i], penalty) - outcome.against(&sites[*i], *i);
                     displacements[D * node..][..D].copy_from_slice(motion.as_slice());
                 }
             }

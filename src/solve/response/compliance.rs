@@ -11,7 +11,7 @@ use nalgebra::SMatrix;
 use super::super::body::Body;
 use super::applied::{Applied, Means};
 use super::kernel::Kernel;
-use super::transform::Transform;
+use super::transform::{Patch, Transform};
 use crate::error::{Error, Result};
 use crate::mesh::Face;
 use crate::petsc::{Accuracy, Cholesky, Matrix};
@@ -233,6 +233,23 @@ impl<const D: usize> Compliance<D> {
             true => transform.filter(values, (normal.clone(), normal), |wave, w| kernel.act_normally(wave, w)),
             false => transform.filter(values, (0..D, components), |wave, w| kernel.act(wave, w)),
         }
+    }
+
+    /// The same from and to the nodes of a patch alone, whose components `values` are.
+    pub fn displace_patch(&self, patch: &Patch, values: &mut [f64], components: Range<usize>) -> Result<()> {
+        let (transform, kernel) = self.waves().ok_or_else(|| Error::Internal("this face has no transform".into()))?;
+        transform.filter_patch(patch, values, (0..D, components), |wave, w| kernel.act(wave, w))
+    }
+
+    /// The same from the nodes of a patch to all.
+    pub fn displace_from(
+        &self,
+        (patch, values): (&Patch, &[f64]),
+        all: &mut [f64],
+        components: Range<usize>,
+    ) -> Result<()> {
+        let (transform, kernel) = self.waves().ok_or_else(|| Error::Internal("this face has no transform".into()))?;
+        transform.filter_from((patch, values), all, components, |wave, w| kernel.act(wave, w))
     }
 
     /// How many Fourier transforms of one component its products took, there or back.

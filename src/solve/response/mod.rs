@@ -32,7 +32,7 @@ pub use kernel::Kernel;
 pub use layered::{Layered, PeriodicColumn, Relaxations};
 pub use remembering::{Inside, Remembering, Solvers};
 pub use sparse::{Sparse, unprepared};
-pub use transform::{Transform, Wave};
+pub use transform::{Patch, Transform, Wave};
 pub use travelling::{Moving, Travelling};
 pub use waves::{Elimination, Operator};
 

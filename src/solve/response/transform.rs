@@ -8,6 +8,7 @@
 //! both stands one exchange of all components there, and one back. What acts on waves never leaves the rank that has them.
 
 mod lines;
+mod patch;
 
 use std::cell::{Cell, RefCell};
 use std::f64::consts::PI;
@@ -23,6 +24,8 @@ use rustfft::{Fft, FftPlanner};
 use crate::error::{Error, Result};
 use crate::mesh::apart;
 use crate::parallel::{Team, parted};
+use lines::{of_all, to_all};
+pub use patch::Patch;
 
 /// w of a row of nodes at one wave vector: (v, u_z) by (real, imaginary) part. Fields of a layer hold, for each wave vector,
 /// one of them per row from the face down.
@@ -187,7 +190,7 @@ impl<const D: usize> Transform<D> {
         let passing = Passing(0..D);
         let mut room = self.room(&passing);
         let from = self.some_of(values, 0..D);
-        self.lines_there::<D>(values, (&from, &passing), &mut room)?;
+        self.lines_there((&from, &passing), &mut room, of_all::<D, D>(values, self.columns))?;
         self.across_lines((&mut room, &passing), (&from, &[false; D]), |k, w| {
             for (component, c) in w.iter().enumerate() {
                 (waves[k][(component, 0)], waves[k][(component, 1)]) = (c.re, c.im);
@@ -208,7 +211,12 @@ impl<const D: usize> Transform<D> {
                 *c = Complex::new(wave[(component, 0)], wave[(component, 1)]);
             }
         });
-        self.lines_back::<D>(&mut values, (&all, &passing), &mut room)?;
+        self.lines_back(
+            (&all, &passing),
+            &mut room,
+            |_| true,
+            to_all::<D, D>(&mut values, (self.columns, self.share())),
+        )?;
         Ok(values)
     }
 
@@ -229,9 +237,73 @@ impl<const D: usize> Transform<D> {
             return Ok(());
         }
         let to = std::array::from_fn(|component| to.contains(&component));
-        self.lines_there::<D>(values, (&from, &passing), &mut room)?;
+        self.lines_there((&from, &passing), &mut room, of_all::<D, D>(values, self.columns))?;
         self.across_lines((&mut room, &passing), (&from, &to), act);
-        self.lines_back::<D>(values, (&to, &passing), &mut room)
+        self.lines_back((&to, &passing), &mut room, |_| true, to_all::<D, D>(values, (self.columns, self.share())))
+    }
+
+    /// The same from and to the nodes of a patch alone, whose components `values` are; elsewhere there is nothing, and nothing is asked.
+    pub fn filter_patch(
+        &self,
+        patch: &Patch,
+        values: &mut [f64],
+        (from, to): (Range<usize>, Range<usize>),
+        act: impl Fn(usize, &mut Components<D>),
+    ) -> Result<()> {
+        let passing = Passing(from.start.min(to.start)..from.end.max(to.end));
+        let mut room = self.room(&passing);
+        let from = self.some_of(values, from);
+        if from == [false; D] {
+            values.chunks_exact_mut(D).for_each(|node| node[to.clone()].fill(0.0));
+            return Ok(());
+        }
+        let to = std::array::from_fn(|component| to.contains(&component));
+        self.lines_there((&from, &passing), &mut room, |line, component, row| {
+            patch.put::<D>(values, (line, component), row)
+        })?;
+        self.across_lines((&mut room, &passing), (&from, &to), act);
+        let share = self.share();
+        self.lines_back(
+            (&to, &passing),
+            &mut room,
+            |line| patch.is_on(line),
+            |line, component, row| {
+                patch.take::<D>(row, (line, component, share), values);
+            },
+        )
+    }
+
+    /// Of what the nodes of a patch have to all nodes of this rank, which have nothing where nothing comes from.
+    pub fn filter_from(
+        &self,
+        (patch, values): (&Patch, &[f64]),
+        all: &mut [f64],
+        to: Range<usize>,
+        act: impl Fn(usize, &mut Components<D>),
+    ) -> Result<()> {
+        let passing = Passing(0..D);
+        let mut room = self.room(&passing);
+        let from = self.some_of(values, 0..D);
+        if from == [false; D] {
+            all.fill(0.0);
+            return Ok(());
+        }
+        let to = std::array::from_fn(|component| to.contains(&component));
+        self.lines_there((&from, &passing), &mut room, |line, component, row| {
+            patch.put::<D>(values, (line, component), row)
+        })?;
+        self.across_lines((&mut room, &passing), (&from, &to), act);
+        self.lines_back((&to, &passing), &mut room, |_| true, to_all::<D, D>(all, (self.columns, self.share())))
+    }
+
+    /// Some of the nodes of this rank.
+    pub fn patch(&self, nodes: Vec<usize>) -> Patch {
+        Patch::new(nodes, (self.here.len(), self.columns))
+    }
+
+    /// What the sums of a transform there and back are to be taken times.
+    fn share(&self) -> f64 {
+        1.0 / self.nodes() as f64
     }
 
     /// The same of a list of last components alone: each wave times a number.
@@ -242,9 +314,9 @@ impl<const D: usize> Transform<D> {
         let last = std::array::from_fn(|component| component + 1 == D);
         let passing = Passing(D - 1..D);
         let mut room = self.room(&passing);
-        self.lines_there::<1>(values, (&last, &passing), &mut room)?;
+        self.lines_there((&last, &passing), &mut room, of_all::<D, 1>(values, self.columns))?;
         self.across_lines((&mut room, &passing), (&last, &last), |wave, w| w[D - 1] *= factor(wave));
-        self.lines_back::<1>(values, (&last, &passing), &mut room)
+        self.lines_back((&last, &passing), &mut room, |_| true, to_all::<D, 1>(values, (self.columns, self.share())))
     }
 
     /// The columns of waves of this rank.

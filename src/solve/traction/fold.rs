@@ -6,7 +6,7 @@
 //! follows depends on nothing but the step, and it is refused.
 
 use super::search::{Operator, Outcome, settle};
-use super::{Answer, Laws, Site, Sites};
+use super::{Answer, Laws, Sites};
 use crate::error::Result;
 use crate::friction::{Circumstances, Lasting, Rebound};
 
@@ -25,7 +25,7 @@ pub fn branches<const D: usize>(
     tolerance: f64,
 ) -> Result<Option<Outcome<D>>> {
     let Some(law) = laws.friction.filter(|law| law.strength().varies()) else { return Ok(None) };
-    let pressure = from.answers.iter().map(|answer| answer.pressure).fold(0.0, f64::max);
+    let pressure = from.answers.iter().map(|(_, answer)| answer.pressure).fold(0.0, f64::max);
     let slid = sites.iter().map(|site| site.slid).fold(0.0, f64::max);
     let temperature = sites.iter().map(|site| site.temperature).fold(0.0, f64::max);
     let at = Circumstances { pressure, dt: laws.dt, resolution: 0.0, slid, temperature };
@@ -54,12 +54,13 @@ pub fn jumped<const D: usize>(
 ) -> bool {
     let Some(law) = laws.friction.filter(|law| law.strength().varies()) else { return false };
     let (mut slipped, mut pressed, mut sheared, mut was) = (0.0, 0.0, 0.0, 0.0);
-    for ((site, answer), before) in sites.iter().zip(&to.answers).zip(before) {
+    was += sites.iter().zip(before).map(|(site, before)| site.weight * before).sum::<f64>();
+    for (i, answer) in &to.answers {
+        let site = &sites[*i];
         let pressure = site.weight * answer.pressure;
         slipped += pressure * law.lasting(answer.slip.norm()).length;
         pressed += pressure;
         sheared += site.weight * answer.shear.norm();
-        was += site.weight * before;
     }
     let [slipped, pressed, sheared, was] = sites.team().sum([slipped, pressed, sheared, was]);
     slipped > FARTHER * usual * pressed && sheared < LEFT * was && !stays(sites, to, laws)
@@ -68,11 +69,12 @@ pub fn jumped<const D: usize>(
 /// Whether the face would stay in fast slip: friction rises again there, or a mass holds the indenter.
 fn stays<const D: usize>(sites: &Sites<D>, at: &Outcome<D>, laws: Laws<'_>) -> bool {
     let Some(law) = laws.friction else { return true };
-    let rise = |(site, answer): (&Site<D>, &Answer<D>)| {
+    let rise = |(i, answer): &(usize, Answer<D>)| {
+        let site = &sites[*i];
         site.weight * law.bound(site.circumstances(answer.pressure, laws), answer.slip.norm()).by_slip
     };
     let inert = laws.held.supports[1..].iter().flatten().any(|support| support.inert);
-    let slipping = sites.iter().zip(&at.answers).filter(|(_, answer)| answer.active && !answer.sticks);
+    let slipping = at.answers.iter().filter(|(_, answer)| answer.active && !answer.sticks);
     let [risen] = sites.team().sum([slipping.map(rise).sum::<f64>()]);
     inert || risen > 0.0
 }

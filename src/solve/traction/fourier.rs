@@ -14,7 +14,7 @@
 use nalgebra::SVector;
 use rustfft::num_complex::Complex;
 
-use super::super::response::{Compliance, Kernel};
+use super::super::response::{Compliance, Kernel, Patch, Transform};
 use super::linear::Linearised;
 use crate::error::Result;
 use crate::parallel::Team;
@@ -83,15 +83,14 @@ impl Fourier {
         (w[0], w[1]) = ((w[0] * c - w[1] * b) * share, (w[1] * a - w[0] * b) * share);
     }
 
-    /// dt = M^-1 b, in place of b.
+    /// dt = M^-1 b on a patch of points, in place of b; all others have nothing.
     pub fn solve<const D: usize>(
         &self,
-        compliance: &Compliance<D>,
-        points: &[Linearised<D>],
+        (transform, kernel): (&Transform<D>, &Kernel<D>),
+        (patch, points): (&Patch, &[Linearised<D>]),
         b: &mut [f64],
         room: &mut Vec<f64>,
     ) -> Result<()> {
-        let Some((transform, kernel)) = compliance.waves() else { return Ok(()) };
         room.resize(b.len(), 0.0);
         for ((point, b), load) in points.iter().zip(b.chunks_exact_mut(D)).zip(room.chunks_exact_mut(D)) {
             if !point.active {
@@ -105,7 +104,7 @@ impl Fourier {
             b.copy_from_slice(point.scaled(point.slack, tangential).as_slice());
         }
         let components = if self.sticks { 0..D } else { D - 1..D };
-        transform.filter(room, (components.clone(), components), |wave, w| self.act(kernel, wave, w))?;
+        transform.filter_patch(patch, room, (components.clone(), components), |wave, w| self.act(kernel, wave, w))?;
         let active = points.iter().zip(b.chunks_exact_mut(D)).zip(room.chunks_exact(D));
         for ((point, b), y) in active.filter(|((point, _), _)| point.active) {
             let (given, y) = (SVector::from_column_slice(b), SVector::from_column_slice(y));

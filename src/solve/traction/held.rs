@@ -89,10 +89,10 @@ impl Held<'_> {
         self.supports.into_iter().enumerate().filter_map(|(direction, support)| Some((direction, support?)))
     }
 
-    /// The profile over the points of an indenter that has gone on by `shift`; where the sliding is given, as it was.
-    pub fn over<const D: usize>(&self, shift: &SVector<f64, D>, count: usize) -> Vec<Over> {
+    /// The profile over the points of an indenter that has gone on by `shift`; none where the sliding is given, so that it is as it was.
+    pub fn over<const D: usize>(&self, shift: &SVector<f64, D>) -> Vec<Over> {
         let Some(profile) = self.profile.filter(|_| self.supports[1..].iter().any(Option::is_some)) else {
-            return vec![Over::default(); count];
+            return Vec::new();
         };
         let (before, after) = (profile(Vector2::zeros()), profile(in_plane(shift)));
         let change =
@@ -109,7 +109,7 @@ impl Held<'_> {
         let mut forces = [0.0; DIRECTIONS];
         for (direction, _) in self.directions() {
             let way = axis::<D>(direction);
-            forces[direction] = force_along(sites, tractions, |i| column(&sites[i].normal, &way, over[i].slope));
+            forces[direction] = force_along(sites, tractions, |i| column(&sites[i].normal, &way, slope_of(over, i)));
         }
         forces
     }
@@ -149,6 +149,11 @@ pub fn in_plane<const D: usize>(vector: &SVector<f64, D>) -> Vector2<f64> {
     Vector2::from_fn(|i, _| if i + 1 < D { vector[i] } else { 0.0 })
 }
 
+/// h' at a point, where the sliding is held.
+fn slope_of(over: &[Over], i: usize) -> Vector2<f64> {
+    over.get(i).map_or(Vector2::zeros(), |over| over.slope)
+}
+
 fn force_along<const D: usize>(
     sites: &[Site<D>],
     tractions: &[SVector<f64, D>],
@@ -162,6 +167,8 @@ fn force_along<const D: usize>(
 pub struct Border<const D: usize> {
     /// Which directions are held.
     held: [bool; DIRECTIONS],
+    /// Of each point, what it stands for of the whole area.
+    shares: Vec<f64>,
     /// Of each direction: a at the points, and j/kappa.
     columns: [Vec<SVector<f64, D>>; DIRECTIONS],
     products: [Vec<SVector<f64, D>>; DIRECTIONS],
@@ -188,8 +195,8 @@ impl<const D: usize> Border<D> {
         let mut stiffness = Matrix3::identity();
         for (direction, support) in held.directions() {
             let way = axis::<D>(direction);
-            let column = |(site, over): (&Site<D>, &Over)| column(&site.normal, &way, over.slope);
-            columns[direction] = sites.iter().zip(&at.over).map(column).collect();
+            let column = |(i, site): (usize, &Site<D>)| column(&site.normal, &way, slope_of(&at.over, i));
+            columns[direction] = sites.iter().enumerate().map(column).collect();
             let moved: Vec<_> = columns[direction].iter().map(|a| a / modulus).collect();
             products[direction] = product(points, &still, &moved);
             stiffness[(direction, direction)] = support.stiffness / (modulus * sites.area());
@@ -201,7 +208,26 @@ impl<const D: usize> Border<D> {
             }
         }
         let held = held.supports.map(|support| support.is_some());
-        Some(Self { held, columns, products, stiffness, answers: OnceCell::new(), modulus })
+        let shares = sites.iter().map(|site| site.weight / sites.area()).collect();
+        Some(Self { held, shares, columns, products, stiffness, answers: OnceCell::new(), modulus })
+    }
+
+    /// The same where all but some points have no tractions.
+    pub fn of_some(&self, points: &[usize]) -> Self {
+        let some = |lists: &[Vec<SVector<f64, D>>; DIRECTIONS]| {
+            let of = |list: &Vec<SVector<f64, D>>| match list.is_empty() {
+                true => Vec::new(),
+                false => points.iter().map(|&point| list[point]).collect(),
+            };
+            std::array::from_fn(|direction| of(&lists[direction]))
+        };
+        Self {
+            shares: points.iter().map(|&point| self.shares[point]).collect(),
+            columns: some(&self.columns),
+            products: some(&self.products),
+            answers: OnceCell::new(),
+            ..*self
+        }
     }
 
     /// The product of the bordered system with (dt, kappa dz), of which `product` is J dt.
@@ -254,11 +280,13 @@ impl<const D: usize> Border<D> {
 
     /// l dt over the area.
     fn row(&self, sites: &Sites<D>, direction: usize, dt: &[SVector<f64, D>]) -> f64 {
-        if !self.held[direction] || sites.is_empty() {
+        if !self.held[direction] {
             return 0.0;
         }
-        let [force] = sites.team().sum([force_along(sites, dt, |i| self.columns[direction][i])]);
-        force / sites.area()
+        let columns = self.columns[direction].iter().zip(&self.shares);
+        let mine = -columns.zip(dt).map(|((column, share), t)| share * t.dot(column)).sum::<f64>();
+        let [force] = sites.team().sum([mine]);
+        force
     }
 
     /// How far the indenter goes on.
@@ -306,7 +334,7 @@ pub fn steepening<const D: usize>(
     /// Over the distance of two points.
     const BESIDE: f64 = 1e-4;
     let beside = BESIDE * size.powf(1.0 / (D - 1) as f64);
-    let over = |sign: f64| held.over(&(shift + axis::<D>(direction) * (sign * beside)), pressing.len());
+    let over = |sign: f64| held.over(&(shift + axis::<D>(direction) * (sign * beside)));
     let slopes = over(1.0).into_iter().zip(over(-1.0)).map(|(on, back)| (on.slope - back.slope) / (2.0 * beside));
     pressing.iter().zip(slopes).map(|(force, steeper)| steeper * *force).sum()
 }

@@ -22,6 +22,7 @@ mod dense;
 mod fold;
 mod fourier;
 mod held;
+mod krylov;
 mod linear;
 mod pointwise;
 mod pressed;
@@ -48,6 +49,7 @@ pub use dense::Factor;
 pub use fold::jumped;
 pub use fourier::Fourier;
 pub use held::{Border, Held, Over, against, axis, column, down_to, in_plane, places, shift, steepening, touch, up};
+pub use krylov::System;
 pub use linear::{Linearised, product};
 pub use pointwise::Pointwise;
 pub use pressed::approach_under;
@@ -196,6 +198,49 @@ impl<const D: usize> Site<D> {
         answer
     }
 
+    /// Whether a point that bears nothing does not come into contact: then its answer is that of an open one.
+    fn stays_open(&self, traction: &SVector<f64, D>, motion: &SVector<f64, D>, laws: Laws<'_>) -> bool {
+        let closes = || self.normal.dot(motion) - self.clearance > 0.0;
+        laws.adhesion.is_none() && traction.iter().all(|t| *t == 0.0) && !closes()
+    }
+
+    /// The square of what round-off leaves of G of such a point, Pa^2.
+    fn open_noise(&self) -> f64 {
+        (f64::EPSILON * self.moduli.normal * self.lengths[0]).powi(2)
+    }
+
+    /// The same of a point in contact if it sticks where it stuck `before`, and slips the way it slipped: what is linear then. Where
+    /// there is no friction, or the body is held along the face, that is what the laws make of it.
+    pub fn answer_as_before(
+        &self,
+        (traction, motion): (&SVector<f64, D>, &SVector<f64, D>),
+        laws: Laws<'_>,
+        (before, answer): (&State<D>, Answer<D>),
+    ) -> Answer<D> {
+        let (Some(law), Some(rho)) = (laws.friction, self.moduli.tangential) else { return answer };
+        let sheared = before.shear.norm();
+        if !answer.active || before.pressure <= 0.0 || sheared == 0.0 {
+            return answer;
+        }
+        let at = self.circumstances(answer.pressure, laws);
+        let shear = traction + self.normal * -self.normal.dot(traction);
+        let pull = shear + self.relative(motion).slip * rho;
+        let share = |slope: f64| match slope.is_infinite() {
+            true => [1.0, 0.0],
+            false => [slope / (slope + rho), rho / (slope + rho)],
+        };
+        let (met, grip, slack, drag) = if before.sticks {
+            let [grip, slack] = share(law.shear(at, 0.0).by_slip);
+            (pull * grip, [grip; 2], [slack; 2], 0.0)
+        } else {
+            let Met { shear, .. } = law.meet(at, pull.norm().max(2.0 * law.bound(at, 0.0).value), rho);
+            let [grip, slack] = share(shear.by_slip);
+            (before.shear * (shear.shear / sheared), [grip, 0.0], [slack, 1.0], shear.by_pressure)
+        };
+        let excess = answer.excess + answer.shear - met;
+        Answer { excess, shear: met, grip, slack, drag, direction: before.shear / sheared, ..answer }
+    }
+
     /// p* of a point that wears, and what is known of it.
     fn wear(
         &self,
@@ -301,6 +346,11 @@ impl<const D: usize> Answer<D> {
             wearing: [0.0; 2],
             noise: 0.0,
         }
+    }
+
+    /// Of an open point that bears nothing.
+    pub fn none(site: &Site<D>, motion: &SVector<f64, D>) -> Self {
+        Self::open(SVector::zeros(), site.relative(motion).slip)
     }
 
     /// The motion from which the laws make, by displacements, the traction that they have met, to all its digits, m; only in

@@ -23,12 +23,12 @@ pub struct Outcome<const D: usize> {
     pub motions: Vec<SVector<f64, D>>,
     /// How far the indenter has gone from there, m: part of each motion.
     pub shift: SVector<f64, D>,
-    /// The profile there.
+    /// The profile there; none where the sliding is given, so that it is as it was.
     pub over: Vec<Over>,
     /// R of each direction over the root of the area: beside G in the norm.
     pub unbalance: [f64; DIRECTIONS],
-    /// Of each point.
-    pub answers: Vec<Answer<D>>,
+    /// Of each point that is in contact or bears a traction, in their order: few of all points. All others are open and stay so.
+    pub answers: Vec<(usize, Answer<D>)>,
     /// Over all points.
     sums: Sums,
     /// What round-off leaves of the equations of the indenter.
@@ -47,16 +47,12 @@ struct Sums {
 }
 
 impl Sums {
-    /// Over the points of this rank.
-    fn of<const D: usize>(sites: &[Site<D>], tractions: &[SVector<f64, D>], answers: &[Answer<D>]) -> Self {
-        let mut sums = Self::default();
-        for ((site, t), answer) in sites.iter().zip(tractions).zip(answers) {
-            sums.excess += site.weight * answer.excess.norm_squared();
-            sums.tractions += site.weight * t.norm_squared();
-            sums.noise += site.weight * answer.noise;
-            sums.touching += f64::from(u8::from(answer.touches()));
-        }
-        sums
+    /// With a point more.
+    fn add<const D: usize>(&mut self, site: &Site<D>, t: &SVector<f64, D>, answer: &Answer<D>) {
+        self.excess += site.weight * answer.excess.norm_squared();
+        self.tractions += site.weight * t.norm_squared();
+        self.noise += site.weight * answer.noise;
+        self.touching += f64::from(u8::from(answer.touches()));
     }
 
     /// Over those of all, and the sums of the forces. Collective.
@@ -79,15 +75,22 @@ impl<const D: usize> Outcome<D> {
         (mut motions, shift): (Vec<SVector<f64, D>>, SVector<f64, D>),
         laws: Laws<'_>,
     ) -> Self {
-        let over = laws.held.over(&shift, sites.len());
+        let over = laws.held.over(&shift);
         for ((site, over), motion) in
             sites.iter().zip(&over).zip(&mut motions).filter(|((_, over), _)| over.rise != 0.0)
         {
             *motion -= site.normal * (site.normal.dot(&up()) * over.rise);
         }
-        let answers: Vec<_> =
-            sites.iter().zip(&tractions).zip(&motions).map(|((site, t), m)| site.answer(t, m, laws)).collect();
-        let sums = Sums::of(sites, &tractions, &answers);
+        let (mut sums, mut answers) = (Sums::default(), Vec::new());
+        for (i, ((site, t), motion)) in sites.iter().zip(&tractions).zip(&motions).enumerate() {
+            if site.stays_open(t, motion, laws) {
+                sums.noise += site.weight * site.open_noise();
+                continue;
+            }
+            let answer = site.answer(t, motion, laws);
+            sums.add(site, t, &answer);
+            answers.push((i, answer));
+        }
         let (sums, met) = sums.everywhere(sites, laws.held.forces(sites, (&tractions, &over)));
         let unbalance = laws.held.unbalance(met, &shift).map(|unbalance| unbalance / sites.area().sqrt());
         Self { tractions, motions, shift, over, unbalance, answers, sums, noise: laws.held.noise(sites) }
@@ -95,6 +98,9 @@ impl<const D: usize> Outcome<D> {
 
     /// The motions under the profile as it was placed.
     fn under_placed(&self, sites: &Sites<D>) -> Vec<SVector<f64, D>> {
+        if self.over.is_empty() {
+            return self.motions.clone();
+        }
         let lowered = |((site, over), motion): ((&Site<D>, &Over), &SVector<f64, D>)| {
             motion + site.normal * (site.normal.dot(&up()) * over.rise)
         };
@@ -103,7 +109,8 @@ impl<const D: usize> Outcome<D> {
 
     /// What of the motion of a point is the indenter's going on, m.
     pub fn against(&self, site: &Site<D>, i: usize) -> SVector<f64, D> {
-        against(site, &self.shift) - site.normal * (site.normal.dot(&up()) * self.over[i].rise)
+        let rise = self.over.get(i).map_or(0.0, |over| over.rise);
+        against(site, &self.shift) - site.normal * (site.normal.dot(&up()) * rise)
     }
 
     /// The same under other laws.
@@ -119,11 +126,12 @@ impl<const D: usize> Outcome<D> {
         (decrement, moved, gone): Along<'_, D>,
         (lambda, laws): (f64, Laws<'_>),
     ) -> Self {
-        let less = |values: &[SVector<f64, D>], by: &[SVector<f64, D>]| {
-            values.iter().zip(by).map(|(value, by)| value - by * lambda).collect::<Vec<_>>()
+        let less = |mut values: Vec<SVector<f64, D>>, by: &[SVector<f64, D>]| {
+            values.iter_mut().zip(by).for_each(|(value, by)| *value -= by * lambda);
+            values
         };
-        let motions = (less(&self.under_placed(sites), moved), self.shift - gone * lambda);
-        Self::new(sites, less(&self.tractions, decrement), motions, laws)
+        let motions = (less(self.under_placed(sites), moved), self.shift - gone * lambda);
+        Self::new(sites, less(self.tractions.clone(), decrement), motions, laws)
     }
 
     /// How the forces along the face change with the slopes of the profile as the indenter goes on in a direction, N/m per m. Collective.
@@ -169,12 +177,24 @@ impl<const D: usize> Outcome<D> {
 
     /// The derivatives at each point.
     pub fn linearised(&self, sites: &Sites<D>) -> Vec<Linearised<D>> {
-        sites.iter().zip(&self.answers).map(|(site, answer)| Linearised::new(site, answer)).collect()
+        let open = Answer::open(SVector::zeros(), SVector::zeros());
+        let mut all: Vec<_> = sites.iter().map(|site| Linearised::new(site, &open)).collect();
+        self.answers.iter().for_each(|(i, answer)| all[*i] = Linearised::new(&sites[*i], answer));
+        all
+    }
+
+    /// G of each point, Pa.
+    pub fn excess(&self) -> Vec<SVector<f64, D>> {
+        let mut all = vec![SVector::zeros(); self.tractions.len()];
+        self.answers.iter().for_each(|(i, answer)| all[*i] = answer.excess);
+        all
     }
 
     /// t* of each point, Pa.
     pub fn met(&self, sites: &Sites<D>) -> Vec<SVector<f64, D>> {
-        sites.iter().zip(&self.answers).map(|(site, answer)| answer.met(site)).collect()
+        let mut all = vec![SVector::zeros(); self.tractions.len()];
+        self.answers.iter().for_each(|(i, answer)| all[*i] = answer.met(&sites[*i]));
+        all
     }
 
     /// R of each direction over the area.
@@ -231,7 +251,7 @@ pub fn settle<const D: usize>(
             break;
         }
         let Ok(factor) = Factor::new(at.linearised(sites), influence) else { break };
-        let excess: Vec<_> = at.answers.iter().map(|answer| answer.excess).collect();
+        let excess = at.excess();
         let solve = |right: &[SVector<f64, D>]| factor.solve(right, moves);
         let (decrement, gone) = match Border::new(sites, (&at, factor.points()), laws.held) {
             None => (solve(&excess)?, SVector::zeros()),

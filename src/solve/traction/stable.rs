@@ -38,15 +38,14 @@ pub fn is_stable<const D: usize>(
     influence: &Influence<'_, D>,
 ) -> bool {
     let Some(law) = laws.adhesion else { return true };
-    let of = |(point, answer): (usize, &Answer<D>)| match answer.gap > 0.0 {
+    let of = |&(point, answer): &(usize, Answer<D>)| match answer.gap > 0.0 {
         true => {
             let slope = law.at(answer.gap).by_gap;
             (slope < 0.0).then(|| Held { point, soft: 1.0 / slope, closed: false })
         }
         false => Some(Held { point, soft: laws.penalty.map_or(0.0, f64::recip), closed: true }),
     };
-    let mut held: Vec<Held> =
-        at.answers.iter().enumerate().filter(|(_, answer)| answer.active).filter_map(of).collect();
+    let mut held: Vec<Held> = at.answers.iter().filter(|(_, answer)| answer.active).filter_map(of).collect();
     held.sort_by_key(|point| !point.closed);
     if held.is_empty() || held.len() > MOST || held.iter().all(|point| point.closed) {
         return true;

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use rustfft::num_complex::Complex;
+
 use super::{Passing, Room, Transform, transform_failed};
 use crate::error::Result;
 
@@ -41,29 +43,35 @@ impl<const D: usize> Transform<D> {
         })
     }
 
-    /// Along each line, of the last `S` components to a node.
-    pub(super) fn lines_there<const S: usize>(
+    /// Along each line: `put` writes what it has of a component on a line, and says whether that is not nothing, which is not
+    /// transformed.
+    pub(super) fn lines_there(
         &self,
-        values: &[f64],
         (from, passing): (&[bool; D], &Passing),
         room: &mut Room<D>,
+        put: impl Fn(usize, usize, &mut [f64]) -> bool,
     ) -> Result<()> {
         self.count(from);
         let (width, parted) = (self.own().len(), self.team.is_parted());
         let Room { spectra, others, row, spectrum, scratch, .. } = room;
         let scratch = &mut scratch[..self.forward.get_scratch_len()];
         let [columns, lines] = if parted { self.parts(passing) } else { Default::default() };
-        for (line, nodes) in values.chunks_exact(S * self.columns).enumerate() {
+        for line in 0..self.here.len() {
             for component in (0..D).filter(|&component| from[component]) {
-                let place = component + S - D;
-                row.iter_mut().zip(nodes.chunks_exact(S)).for_each(|(row, node)| *row = node[place]);
+                let some = put(line, component, row);
                 let own = ((self.here.start + line) * passing.count() + passing.place(component)) * width;
                 let own = &mut spectra[own..][..width];
                 if !parted {
-                    self.forward.process_with_scratch(row, own, scratch).map_err(transform_failed)?;
+                    match some {
+                        true => self.forward.process_with_scratch(row, own, scratch).map_err(transform_failed)?,
+                        false => own.fill(Complex::default()),
+                    }
                     continue;
                 }
-                self.forward.process_with_scratch(row, spectrum, scratch).map_err(transform_failed)?;
+                match some {
+                    true => self.forward.process_with_scratch(row, spectrum, scratch).map_err(transform_failed)?,
+                    false => spectrum.fill(Complex::default()),
+                }
                 for (range, at) in self.pieces((line, component), passing, &columns) {
                     let to = at.map_or(&mut own[..], |at| &mut others[at..][..range.len()]);
                     to.copy_from_slice(&spectrum[range]);
@@ -74,21 +82,22 @@ impl<const D: usize> Transform<D> {
         Ok(())
     }
 
-    /// Back along each line.
-    pub(super) fn lines_back<const S: usize>(
+    /// Back along each line that is `wanted`: `take` is given what is on it of a component, times the number of nodes.
+    pub(super) fn lines_back(
         &self,
-        values: &mut [f64],
         (to, passing): (&[bool; D], &Passing),
         room: &mut Room<D>,
+        wanted: impl Fn(usize) -> bool,
+        mut take: impl FnMut(usize, usize, &[f64]),
     ) -> Result<()> {
         self.count(to);
-        let (half, share) = (self.half(), 1.0 / self.nodes() as f64);
+        let half = self.half();
         let (width, parted) = (self.own().len(), self.team.is_parted());
         let Room { spectra, others, row, spectrum, scratch, .. } = room;
         let scratch = &mut scratch[..self.inverse.get_scratch_len()];
         let [columns, lines] = if parted { self.parts(passing) } else { Default::default() };
         self.team.exchange((spectra, &lines), (others, &columns));
-        for (line, nodes) in values.chunks_exact_mut(S * self.columns).enumerate() {
+        for line in (0..self.here.len()).filter(|line| wanted(*line)) {
             for component in (0..D).filter(|&component| to[component]) {
                 let own = ((self.here.start + line) * passing.count() + passing.place(component)) * width;
                 let own = &mut spectra[own..][..width];
@@ -107,10 +116,36 @@ impl<const D: usize> Transform<D> {
                     whole[half - 1].im = 0.0;
                 }
                 self.inverse.process_with_scratch(whole, row, scratch).map_err(transform_failed)?;
-                let place = component + S - D;
-                nodes.chunks_exact_mut(S).zip(row.iter()).for_each(|(node, row)| node[place] = row * share);
+                take(line, component, row);
             }
         }
         Ok(())
+    }
+}
+
+/// What `put` of [`Transform::lines_there`] is for the last `S` of `D` components of every node.
+pub(super) fn of_all<const D: usize, const S: usize>(
+    values: &[f64],
+    columns: usize,
+) -> impl Fn(usize, usize, &mut [f64]) -> bool {
+    move |line, component, row| {
+        let nodes = values[line * S * columns..][..S * columns].chunks_exact(S);
+        let mut some = false;
+        for (row, node) in row.iter_mut().zip(nodes) {
+            *row = node[component + S - D];
+            some |= *row != 0.0;
+        }
+        some
+    }
+}
+
+/// What `take` of [`Transform::lines_back`] is for them, each times a `share`.
+pub(super) fn to_all<const D: usize, const S: usize>(
+    values: &mut [f64],
+    (columns, share): (usize, f64),
+) -> impl FnMut(usize, usize, &[f64]) {
+    move |line, component, row| {
+        let nodes = values[line * S * columns..][..S * columns].chunks_exact_mut(S);
+        nodes.zip(row).for_each(|(node, row)| node[component + S - D] = row * share);
     }
 }

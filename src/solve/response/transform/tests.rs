@@ -30,3 +30,31 @@ fn what_nothing_acts_on_stays() {
         assert_eq!(transform.counted() - before, 4);
     }
 }
+
+/// From a patch and to it is what comes from a face that has nothing elsewhere, at those nodes, and from a patch to all nodes what comes
+/// anywhere, to the last bit: lines that have nothing are not transformed, but are none the less there.
+#[test]
+fn a_patch_is_a_face_with_nothing_elsewhere() {
+    for counts in [[7, 10], [16, 18], [2, 40]] {
+        let transform = Transform::<3>::new(&counts);
+        let nodes: Vec<usize> = (0..transform.nodes()).filter(|i| i / counts[1] % 3 != 1 && i % 5 < 2).collect();
+        let patch = transform.patch(nodes.clone());
+        assert_eq!(patch.nodes(), nodes);
+        let mut all = vec![0.0; 3 * transform.nodes()];
+        let mut some: Vec<f64> = (0..3 * nodes.len()).map(|i| ((7 * i + 3) % 11) as f64 - 4.0).collect();
+        for (node, values) in nodes.iter().zip(some.chunks_exact(3)) {
+            all[3 * node..][..3].copy_from_slice(values);
+        }
+        let act = |wave: usize, w: &mut [Complex<f64>; 3]| {
+            let share = 1.0 / (1.0 + wave as f64);
+            *w = [w[1] * share, w[2] + w[0] * share, w[0] - w[1]];
+        };
+        let mut everywhere = vec![1.0; all.len()];
+        transform.filter_from((&patch, &some), &mut everywhere, 0..3, act).unwrap();
+        transform.filter_patch(&patch, &mut some, (0..3, 0..3), act).unwrap();
+        transform.filter(&mut all, (0..3, 0..3), act).unwrap();
+        assert_eq!(everywhere, all);
+        let there: Vec<f64> = nodes.iter().flat_map(|node| all[3 * node..][..3].to_vec()).collect();
+        assert_eq!(some, there);
+    }
+}
