@@ -149,10 +149,8 @@ fn assembled<const D: usize>(
     let heated = scene.heat.as_ref().map(|heat| (heat_of(scene, heat, &materials), solid.clone()));
     let mut problem = match form(scene) {
         Form::Monolithic => strategy::monolithic(comm, scene, (solid, materials), (interface, means))?,
-        Form::Following => strategy::following(comm, scene, (solid, materials), interface, (compliances, means))?,
-        Form::Remembering | Form::Coupled => {
-            strategy::remembering(comm, scene, (solid, materials), (interface, means))?
-        }
+        Form::FaceMemory => strategy::face_memory(comm, scene, (solid, materials), interface, (compliances, means))?,
+        Form::BulkMemory | Form::Coupled => strategy::bulk_memory(comm, scene, (solid, materials), (interface, means))?,
     };
     let phases = phases(scene, course::penetration(scene, problem.strategy.as_mut(), clearance)?);
     if let Some((heat, solid)) = heated {

@@ -383,7 +383,7 @@ fn strategy(scene: &Scene, unknowns: usize) -> String {
             "monolithic: all unknowns in one sparse system; the bulk is factorised once per step length, and Newton",
             "solves with it and with the compliance of the nodes that came into contact so far",
         ],
-        Form::Following => {
+        Form::FaceMemory => {
             let mut lines = vec![
                 "condensed: all moduli keep their ratios, so that the interior follows the contact",
                 "face; Newton runs on the nodes in contact",
@@ -399,12 +399,12 @@ fn strategy(scene: &Scene, unknowns: usize) -> String {
             "condensed: the arms follow the temperature of their cells; one assembly and one",
             "factorisation per step (by the first rank alone), Newton on the nodes in contact",
         ],
-        Form::Remembering if by_wave => vec![
+        Form::BulkMemory if by_wave => vec![
             "condensed: not all moduli relax alike, so that the interior has a memory of its own;",
             "periodic layer: it is solved for wavenumber by wavenumber, once per step, without a sparse matrix;",
             "Newton runs on the nodes in contact",
         ],
-        Form::Remembering => vec![
+        Form::BulkMemory => vec![
             "condensed: not all moduli relax alike, so that the interior has a memory of its own; one",
             "factorisation per step length, two interior solves per step, Newton on the nodes in contact",
         ],

@@ -100,24 +100,22 @@ impl Estimate {
                 newton * (2.0 * fill.solve + 1.0e-7 * unknowns) + contact,
                 8.0 * face * face + fill.memory + 4.0 * matrix + arms * vector,
             ),
-            Form::Following if by_wave && outline.is_in_space() => (contact, 1e3 * face),
-            Form::Following if by_wave => (contact, 80.0 * unknowns),
-            Form::Following if means != Means::Dense => {
+            Form::FaceMemory if by_wave && outline.is_in_space() => (contact, 1e3 * face),
+            Form::FaceMemory if by_wave => (contact, 80.0 * unknowns),
+            Form::FaceMemory if means != Means::Dense => {
                 (products * solve, held + FACE_COMPONENT * face + 2.0 * matrix + 8.0 * vector)
             }
-            Form::Following => (contact, compliance + fill.memory + 3.0 * matrix),
-            Form::Remembering if by_wave => {
-                (contact + 3e-8 * unknowns * arms, (12.0 + arms) * vector + 80.0 * unknowns)
-            }
+            Form::FaceMemory => (contact, compliance + fill.memory + 3.0 * matrix),
+            Form::BulkMemory if by_wave => (contact + 3e-8 * unknowns * arms, (12.0 + arms) * vector + 80.0 * unknowns),
             // Each step makes one anew; arms are at the corners of each cell.
             Form::Coupled => (
                 contact + 2.0 * fill.solve + fill.factor + FACE_INVERSE * face.powi(3),
                 compliance + fill.memory + 3.0 * matrix + 2.0_f64.powf(axes) * arms * vector,
             ),
-            Form::Remembering if means != Means::Dense => {
+            Form::BulkMemory if means != Means::Dense => {
                 ((products + 2.0) * solve, kept * held + FACE_COMPONENT * face + 3.0 * matrix + (8.0 + arms) * vector)
             }
-            Form::Remembering => {
+            Form::BulkMemory => {
                 (contact + 2.0 * fill.solve, kept * (compliance + fill.memory) + 3.0 * matrix + arms * vector)
             }
         };
@@ -142,10 +140,10 @@ impl Estimate {
             None => (FACE_STEP[1], FACE_NODE[1]),
         };
         match form(scene) {
-            Form::Following | Form::Monolithic => {
+            Form::FaceMemory | Form::Monolithic => {
                 Self { step: step * nodes, memory: PROGRAM + nodes * (node + FACE_ARM * arms) }
             }
-            Form::Remembering | Form::Coupled => {
+            Form::BulkMemory | Form::Coupled => {
                 // The shear and the bulk of each material.
                 let parts = 2.0 * scene.materials.len() as f64;
                 let of_row = WAVE_NODE + WAVE_PART * parts + WAVE_ARM * arms;

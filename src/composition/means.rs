@@ -53,8 +53,8 @@ pub fn choose(
             picked(if free && !fits(Means::Factor) { Means::Multigrid } else { Means::Factor })
         }
         Form::Coupled => None,
-        Form::Following | Form::Remembering if periodic => None,
-        Form::Following | Form::Remembering => match asked {
+        Form::FaceMemory | Form::BulkMemory if periodic => None,
+        Form::FaceMemory | Form::BulkMemory => match asked {
             Some("cholesky" | "lu") => Some(Chosen { means: Means::Factor, asked: true }),
             Some(_) => Some(Chosen { means: Means::Multigrid, asked: true }),
             None => {

@@ -16,9 +16,9 @@ use crate::parallel::{Team, agree};
 use crate::petsc::{Integrator, Linear, Matrix, Search, Settings, Vector};
 use crate::scene::{self, Scene};
 use crate::solve::{
-    Body, Bordered, Compliance, Condensed, Coupled, Following, Freedom, Inside, Interior, LARGE_FACE,
-    LARGE_PERIODIC_FACE, Layered, MAX_NEWTON, MAX_NEWTON_OF_JUMPS, Means, Monolithic, PeriodicColumn, Relaxation,
-    Remembering, Response, Solid, Sparse, TransientProblem, Way,
+    Body, Bordered, BulkMemory, Compliance, Condensed, Coupled, FaceMemory, Freedom, Interior, LARGE_FACE,
+    LARGE_PERIODIC_FACE, Layered, MAX_NEWTON, MAX_NEWTON_OF_JUMPS, Means, Monolithic, PeriodicColumn, Recovery,
+    Relaxation, Response, Solid, Sparse, TransientProblem, Way,
 };
 
 /// The last elastic compliance on this rank, for the next scene with the same mesh and moduli: in a sweep it is
@@ -67,9 +67,9 @@ pub enum Form {
     /// All unknowns.
     Monolithic,
     /// On the face; the interior follows it for all time.
-    Following,
+    FaceMemory,
     /// On the face; the interior has a memory of its own.
-    Remembering,
+    BulkMemory,
     /// The same, and each cell has times of its own.
     Coupled,
 }
@@ -79,8 +79,8 @@ pub fn form(scene: &Scene) -> Form {
     match scene.solver.strategy {
         scene::Strategy::Monolithic => Form::Monolithic,
         scene::Strategy::Auto | scene::Strategy::Condensed if scene.is_coupled() => Form::Coupled,
-        scene::Strategy::Auto | scene::Strategy::Condensed if Materials::new(scene).relax_alike() => Form::Following,
-        scene::Strategy::Auto | scene::Strategy::Condensed => Form::Remembering,
+        scene::Strategy::Auto | scene::Strategy::Condensed if Materials::new(scene).relax_alike() => Form::FaceMemory,
+        scene::Strategy::Auto | scene::Strategy::Condensed => Form::BulkMemory,
     }
 }
 
@@ -132,7 +132,7 @@ fn freedom<const D: usize>(scene: &Scene, height: f64) -> Freedom {
     Freedom { directions: [scene.is_loaded(), mounts[1].is_some(), mounts[2].is_some()], height }
 }
 
-pub(super) fn following<const D: usize>(
+pub(super) fn face_memory<const D: usize>(
     comm: &SimpleCommunicator,
     scene: &Scene,
     (solid, materials): (Solid<D>, Materials),
@@ -150,12 +150,12 @@ pub(super) fn following<const D: usize>(
     };
     let column = PeriodicColumn::new(&solid);
     let height = solid.source.height();
-    let interior = Interior::new(comm, solid, (column, means));
-    let backing = Following { compliance, relaxation, interior, secant: 1.0, account: None };
+    let recovery = Recovery::new(comm, solid, (column, means));
+    let backing = FaceMemory { compliance, relaxation, recovery, secant: 1.0, account: None };
     condensed(comm, scene, (u, height), (interface, backing, means))
 }
 
-pub(super) fn remembering<const D: usize>(
+pub(super) fn bulk_memory<const D: usize>(
     comm: &SimpleCommunicator,
     scene: &Scene,
     (solid, materials): (Solid<D>, Materials),
@@ -168,7 +168,7 @@ pub(super) fn remembering<const D: usize>(
         false => inside(&solid, materials, (team, means)),
     };
     let inside = if here { make().map(Some) } else { Ok(None) };
-    let backing = Remembering::new(comm, agree(comm, inside)?);
+    let backing = BulkMemory::new(comm, agree(comm, inside)?);
     let u = face_vector(comm, &interface)?;
     condensed(comm, scene, (u, solid.source.height()), (interface, backing, means))
 }
@@ -246,7 +246,7 @@ fn inside<const D: usize>(
     solid: &Solid<D>,
     materials: Materials,
     (team, means): (&Rc<Team>, Means),
-) -> Result<Box<dyn Inside<D>>> {
+) -> Result<Box<dyn Interior<D>>> {
     if let Some(column) = PeriodicColumn::new(solid) {
         return Ok(Box::new(Layered::new(solid.clone(), &column, materials.relaxations(), team)));
     }
@@ -256,7 +256,7 @@ fn inside<const D: usize>(
 }
 
 /// The same where each cell has its own temperature.
-fn coupled<const D: usize>(scene: &Scene, solid: &Solid<D>, materials: Materials) -> Result<Box<dyn Inside<D>>> {
+fn coupled<const D: usize>(scene: &Scene, solid: &Solid<D>, materials: Materials) -> Result<Box<dyn Interior<D>>> {
     let shifts = scene.materials.iter().map(|material| material.shift.map(scene::Shifting::law)).collect();
     let body = Body::new(SimpleCommunicator::self_comm(), solid)?;
     Ok(Box::new(Coupled::new(solid, body, materials.relaxations(), shifts)?))

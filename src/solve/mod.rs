@@ -28,8 +28,8 @@ pub use driver::{Counts, Driver, MAX_NEWTON, MAX_NEWTON_OF_JUMPS, Position};
 pub use heat::{Convection, Heat, Heated, Medium, Thermal};
 pub use monolithic::{Bordered, Monolithic};
 pub use response::{
-    Compliance, Coupled, Following, Inside, Interior, Layered, Means, Moving, PeriodicColumn, Relaxation, Relaxations,
-    Remembering, Response, Sparse, Transform, Travelling,
+    BulkMemory, Compliance, Coupled, FaceMemory, Interior, Layered, Means, Moving, PeriodicColumn, Recovery,
+    Relaxation, Relaxations, Response, Sparse, Transform, Travelling,
 };
 
 /// What helps most steps that do not converge.

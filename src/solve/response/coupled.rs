@@ -12,9 +12,9 @@ mod cells;
 
 use super::super::body::{Body, Solid};
 use super::super::{BulkFields, Tempered, Work};
+use super::bulk_memory::Interior;
 use super::compliance::Compliance;
 use super::layered::Relaxations;
-use super::remembering::Inside;
 use super::sparse::{FaceRows, unprepared};
 use crate::element::solid::row_major;
 use crate::energy::BodyEnergy;
@@ -88,7 +88,7 @@ impl<const D: usize> Coupled<D> {
     }
 }
 
-impl<const D: usize> Inside<D> for Coupled<D> {
+impl<const D: usize> Interior<D> for Coupled<D> {
     fn prepare(&mut self, step: Step) -> Result<()> {
         if self.solver.as_ref().is_none_or(|solver| solver.dt != step.dt) {
             // Frees the old one first.

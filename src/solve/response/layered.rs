@@ -8,9 +8,9 @@ use nalgebra::SMatrix;
 
 use super::super::body::{Body, Region, Solid};
 use super::super::{BulkFields, Work};
+use super::bulk_memory::{Interior, Solvers};
 use super::compliance::Compliance;
 use super::kernel::Kernel;
-use super::remembering::{Inside, Solvers};
 use super::sparse::unprepared;
 use super::transform::{Transform, Wave};
 use super::waves::{Elimination, Operator, face_compliance};
@@ -233,7 +233,7 @@ impl<const D: usize> Layered<D> {
     }
 }
 
-impl<const D: usize> Inside<D> for Layered<D> {
+impl<const D: usize> Interior<D> for Layered<D> {
     fn prepare(&mut self, step: Step) -> Result<()> {
         let factors = self.relaxations.factors(step.dt);
         let Self { relaxations, parts, transform, solvers, .. } = self;

@@ -4,14 +4,14 @@
 //! and what the contact forces add through a compliance: u = u_free + C f/c.
 
 mod applied;
+mod bulk_memory;
 mod compliance;
 mod coupled;
-mod following;
-mod interior;
+mod face_memory;
 mod kernel;
 mod layered;
 mod model;
-mod remembering;
+mod recovery;
 mod sparse;
 mod transform;
 mod travelling;
@@ -24,13 +24,13 @@ use crate::petsc::{Gather, Step, Vector};
 use crate::snapshot::{NaturalOrder, Snapshot};
 
 pub use applied::Means;
+pub use bulk_memory::{BulkMemory, Interior, Solvers};
 pub use compliance::Compliance;
 pub use coupled::Coupled;
-pub use following::{Following, Relaxation};
-pub use interior::Interior;
+pub use face_memory::{FaceMemory, Relaxation};
 pub use kernel::Kernel;
 pub use layered::{Layered, PeriodicColumn, Relaxations};
-pub use remembering::{Inside, Remembering, Solvers};
+pub use recovery::Recovery;
 pub use sparse::{Sparse, unprepared};
 pub use transform::{Patch, Transform, Wave};
 pub use travelling::{Moving, Travelling};

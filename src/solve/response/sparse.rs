@@ -6,8 +6,8 @@ use std::rc::Rc;
 use super::super::body::Body;
 use super::super::{BulkFields, Work};
 use super::applied::Means;
+use super::bulk_memory::{Interior, Solvers};
 use super::compliance::Compliance;
-use super::remembering::{Inside, Solvers};
 use crate::bulk::Bulk;
 use crate::energy::BodyEnergy;
 use crate::error::{Error, Result};
@@ -93,7 +93,7 @@ impl<const D: usize> Sparse<D> {
     }
 }
 
-impl<const D: usize> Inside<D> for Sparse<D> {
+impl<const D: usize> Interior<D> for Sparse<D> {
     fn prepare(&mut self, step: Step) -> Result<()> {
         let Self { solvers, bulk, tangent, kept, means, body, done, solves, .. } = self;
         solvers.select(step.dt, || {

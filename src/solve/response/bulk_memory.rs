@@ -23,7 +23,7 @@ use crate::petsc::{Gather, Step, Vector};
 use crate::snapshot::{NaturalOrder, Snapshot};
 
 /// The body with its memory, whole on one rank or parted among all: then the calls are collective.
-pub trait Inside<const D: usize> {
+pub trait Interior<const D: usize> {
     /// Makes u_free and C hold for a step of this length from the accepted state.
     fn prepare(&mut self, step: Step) -> Result<()>;
     /// u_free of each face node, m.
@@ -83,24 +83,24 @@ impl<T> Solvers<T> {
 }
 
 /// A body with an interior memory.
-pub struct Remembering<const D: usize> {
+pub struct BulkMemory<const D: usize> {
     comm: SimpleCommunicator,
     /// On rank 0, or on all ranks, each with its part.
-    inside: Option<Box<dyn Inside<D>>>,
+    inside: Option<Box<dyn Interior<D>>>,
     /// Length of the step that was prepared, s.
     prepared: Option<f64>,
     /// On all ranks; only where it is asked for.
     energy: Option<BodyEnergy>,
 }
 
-impl<const D: usize> Remembering<D> {
+impl<const D: usize> BulkMemory<D> {
     /// At rest; `inside` is on rank 0 of `comm`, or on all that share it.
-    pub fn new(comm: &SimpleCommunicator, inside: Option<Box<dyn Inside<D>>>) -> Self {
+    pub fn new(comm: &SimpleCommunicator, inside: Option<Box<dyn Interior<D>>>) -> Self {
         Self { comm: comm.duplicate(), inside, prepared: None, energy: None }
     }
 }
 
-impl<const D: usize> Response<D> for Remembering<D> {
+impl<const D: usize> Response<D> for BulkMemory<D> {
     fn prepare(&mut self, step: Step) -> Result<()> {
         if self.prepared == Some(step.dt) {
             return Ok(());
@@ -174,7 +174,7 @@ impl<const D: usize> Response<D> for Remembering<D> {
     }
 }
 
-impl<const D: usize> Remembering<D> {
+impl<const D: usize> BulkMemory<D> {
     /// Gives every rank the energy of the body. Collective.
     fn share_energy(&mut self) {
         let Some(energy) = &mut self.energy else { return };

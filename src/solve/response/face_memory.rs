@@ -18,7 +18,7 @@ use std::rc::Rc;
 use super::super::{BulkFields, Work};
 use super::Response;
 use super::compliance::Compliance;
-use super::interior::Interior;
+use super::recovery::Recovery;
 use crate::bulk::{Account, Arms, Series};
 use crate::energy::BodyEnergy;
 use crate::error::Result;
@@ -34,13 +34,13 @@ pub struct Relaxation {
 }
 
 /// A body that follows its face.
-pub struct Following<const D: usize> {
+pub struct FaceMemory<const D: usize> {
     /// The elastic compliance at the instantaneous moduli, on rank 0.
     pub compliance: Option<Rc<Compliance<D>>>,
     /// None = elastic.
     pub relaxation: Option<Relaxation>,
     /// What is behind the face.
-    pub interior: Interior<D>,
+    pub recovery: Recovery<D>,
     /// c for the step that was prepared; 1 without memory.
     pub secant: f64,
     /// Only where the energy is asked for.
@@ -58,7 +58,7 @@ pub struct FaceAccount {
     work: Vector,
 }
 
-impl<const D: usize> Response<D> for Following<D> {
+impl<const D: usize> Response<D> for FaceMemory<D> {
     fn prepare(&mut self, step: Step) -> Result<()> {
         if let Some(Relaxation { arms, series }) = &self.relaxation {
             self.secant = series.secant(&arms.factors(step.dt));
@@ -134,7 +134,7 @@ impl<const D: usize> Response<D> for Following<D> {
             Some(Relaxation { arms, series }) => Some(gather.all(arms.accepted(series, u)?)?),
             None => None,
         };
-        self.interior.fields(&displacement, effective.as_deref())
+        self.recovery.fields(&displacement, effective.as_deref())
     }
 }
 

@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::petsc::{Accuracy, Inverse, Matrix, Vector};
 
 /// A body whose interior follows its face: u_I = H u_G.
-pub struct Interior<const D: usize> {
+pub struct Recovery<const D: usize> {
     comm: SimpleCommunicator,
     solid: Solid<D>,
     /// Of a periodic layer.
@@ -39,7 +39,7 @@ struct Inner {
     diagonal: f64,
 }
 
-impl<const D: usize> Interior<D> {
+impl<const D: usize> Recovery<D> {
     /// The interior of a solid, with its column where that is a periodic layer; costs nothing until [`Self::fields`].
     pub fn new(
         comm: &SimpleCommunicator,
