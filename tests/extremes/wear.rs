@@ -62,7 +62,7 @@ impl Worn {
             let rubbed: Vec<f64> = end.pressure.iter().zip(&end.shear).zip(&end.slip_rate).map(rub).collect();
             let expected = self.coefficient(sample) * step * sample.resultant(&rubbed);
             let apart = (after - before - expected).abs();
-            if !(apart <= 1e-9 * after) {
+            if apart.is_nan() || apart > 1e-9 * after {
                 return Err(format!(
                     "phase {phase}: {:e} worn in a step, {expected:e} by its tractions, {after:e} in all",
                     after - before
