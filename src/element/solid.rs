@@ -70,11 +70,10 @@ impl<const D: usize> Split<D> {
 /// Blocks as one row-major matrix, corner by corner.
 pub fn row_major<const D: usize>(blocks: &[SMatrix<f64, D, D>]) -> Vec<f64> {
     let corners = blocks.len().isqrt();
-    let mut values = vec![0.0; blocks.len() * D * D];
-    for (a, rows) in values.chunks_exact_mut(corners * D * D).enumerate() {
-        for (k, value) in rows.iter_mut().enumerate() {
-            let (i, b, j) = (k / (corners * D), k / D % corners, k % D);
-            *value = blocks[a * corners + b][(i, j)];
+    let mut values = Vec::with_capacity(blocks.len() * D * D);
+    for of_corner in blocks.chunks_exact(corners) {
+        for i in 0..D {
+            of_corner.iter().for_each(|block| values.extend((0..D).map(|j| block[(i, j)])));
         }
     }
     values

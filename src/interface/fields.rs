@@ -32,18 +32,41 @@ impl<const D: usize> Interface<D> {
             slip_rate: none,
             worn: self.worn_fields(),
         };
-        let weights: Vec<f64> = self.points.all().iter().map(|point| point.weight).collect();
-        let length = self.at_nodes(&weights);
-        for (i, (point, state)) in self.points.all().iter().zip(&self.accepted).enumerate() {
-            for &(node, share) in self.points.shares(i) {
-                let part = share * point.weight / length[node];
-                fields.pressure[node] += part * state.pressure;
-                fields.shear[node] += laid_flat(&state.shear, &point.normal) * part;
-                fields.slip_rate[node] += laid_flat(&state.slip, &point.normal) * (part / dt);
-                fields.gap[node] = fields.gap[node].min(-state.overlap);
+        self.each_part(|node, i, part| {
+            let (state, normal) = (&self.accepted[i], &self.points.all()[i].normal);
+            fields.pressure[node] += part * state.pressure;
+            fields.shear[node] += laid_flat(&state.shear, normal) * part;
+            fields.slip_rate[node] += laid_flat(&state.slip, normal) * (part / dt);
+            fields.gap[node] = fields.gap[node].min(-state.overlap);
+        });
+        fields
+    }
+
+    /// The tractions at the nodes at the accepted state, Pa: shear as in [`Fields`], and the pressure as the last component.
+    pub(super) fn tractions(&self) -> Vec<SVector<f64, D>> {
+        let mut tractions = vec![SVector::zeros(); self.face.count()];
+        self.each_part(|node, i, part| {
+            let (state, normal) = (&self.accepted[i], &self.points.all()[i].normal);
+            let shear = laid_flat(&state.shear, normal);
+            tractions[node] += SVector::from_fn(|k, _| if k + 1 < D { shear[k] } else { state.pressure }) * part;
+        });
+        tractions
+    }
+
+    /// Calls with each node, each point that shares it, and which part of the mean at the node that is.
+    fn each_part(&self, mut call: impl FnMut(usize, usize, f64)) {
+        let points = &self.points;
+        // A point that is a node is all of it.
+        let lengths = points.share_nodes().then(|| {
+            let weights: Vec<f64> = points.all().iter().map(|point| point.weight).collect();
+            self.at_nodes(&weights)
+        });
+        for (i, point) in points.all().iter().enumerate() {
+            for &(node, share) in points.shares(i) {
+                let part = lengths.as_ref().map_or(1.0, |lengths| share * point.weight / lengths[node]);
+                call(node, i, part);
             }
         }
-        fields
     }
 }
 

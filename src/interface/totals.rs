@@ -3,7 +3,7 @@
 use nalgebra::{SVector, Vector2};
 
 use super::fields::along_the_plane;
-use super::{BEYOND, Fields, Interface, oscillation};
+use super::{BEYOND, Interface, oscillation};
 use crate::error::Result;
 use crate::profile::Surface;
 
@@ -38,10 +38,7 @@ impl<const D: usize> Interface<D> {
     /// As for [`Self::place`].
     pub fn totals(&mut self) -> Result<Totals> {
         self.place(self.place)?;
-        let Fields { pressure, shear, .. } = self.fields(1.0);
-        let traction =
-            |(q, p): (Vector2<f64>, f64)| SVector::<f64, D>::from_fn(|i, _| if i + 1 < D { q[i] } else { p });
-        let tractions: Vec<_> = shear.into_iter().zip(pressure).map(traction).collect();
+        let tractions = self.tractions();
         let around = self.around(&tractions);
         let beside = |other: usize| match other.checked_sub(self.accepted.len()) {
             None => self.accepted[other].pressure > 0.0,
