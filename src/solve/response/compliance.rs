@@ -225,9 +225,7 @@ impl<const D: usize> Compliance<D> {
     /// values = C values for forces on the nodes of a periodic layer, of each node no more than the `components`: the others are left
     /// as they are. No other face knows this.
     pub fn displace(&self, values: &mut [f64], components: Range<usize>) -> Result<()> {
-        let Form::Periodic { transform, kernel, .. } = &self.form else {
-            return Err(Error::Internal("this face has no transform".into()));
-        };
+        let (transform, kernel) = self.transformed()?;
         let normal = D - 1..D;
         match components == normal && transform.team().all_say(only_normal::<D>(values)) {
             true => transform.filter(values, (normal.clone(), normal), |wave, w| kernel.act_normally(wave, w)),
@@ -235,9 +233,14 @@ impl<const D: usize> Compliance<D> {
         }
     }
 
+    /// See [`Self::waves`]; no other face is asked for them.
+    fn transformed(&self) -> Result<(&Transform<D>, &Kernel<D>)> {
+        self.waves().ok_or_else(|| Error::Internal("this face has no transform".into()))
+    }
+
     /// The same from and to the nodes of a patch alone, whose components `values` are.
     pub fn displace_patch(&self, patch: &Patch, values: &mut [f64], components: Range<usize>) -> Result<()> {
-        let (transform, kernel) = self.waves().ok_or_else(|| Error::Internal("this face has no transform".into()))?;
+        let (transform, kernel) = self.transformed()?;
         transform.filter_patch(patch, values, (0..D, components), |wave, w| kernel.act(wave, w))
     }
 
@@ -248,7 +251,7 @@ impl<const D: usize> Compliance<D> {
         all: &mut [f64],
         components: Range<usize>,
     ) -> Result<()> {
-        let (transform, kernel) = self.waves().ok_or_else(|| Error::Internal("this face has no transform".into()))?;
+        let (transform, kernel) = self.transformed()?;
         transform.filter_from((patch, values), all, components, |wave, w| kernel.act(wave, w))
     }
 

@@ -79,6 +79,13 @@ struct Room<const D: usize> {
 #[derive(Clone)]
 struct Passing(Range<usize>);
 
+/// Which components come from somewhere, which go somewhere, and all that pass.
+struct Passage<const D: usize> {
+    from: [bool; D],
+    to: [bool; D],
+    passing: Passing,
+}
+
 impl Passing {
     fn count(&self) -> usize {
         self.0.len()
@@ -229,17 +236,10 @@ impl<const D: usize> Transform<D> {
         (from, to): (Range<usize>, Range<usize>),
         act: impl Fn(usize, &mut Components<D>),
     ) -> Result<()> {
-        let passing = Passing(from.start.min(to.start)..from.end.max(to.end));
-        let mut room = self.room(&passing);
-        let from = self.some_of(values, from);
-        if from == [false; D] {
-            values.chunks_exact_mut(D).for_each(|node| node[to.clone()].fill(0.0));
-            return Ok(());
-        }
-        let to = std::array::from_fn(|component| to.contains(&component));
-        self.lines_there((&from, &passing), &mut room, of_all::<D, D>(values, self.columns))?;
-        self.across_lines((&mut room, &passing), (&from, &to), act);
-        self.lines_back((&to, &passing), &mut room, |_| true, to_all::<D, D>(values, (self.columns, self.share())))
+        let Some(passage) = self.passage(values, (from, to.clone())) else { return cleared::<D>(values, to) };
+        let mut room = self.acted(&passage, of_all::<D, D>(values, self.columns), act)?;
+        let back = to_all::<D, D>(values, (self.columns, self.share()));
+        self.lines_back((&passage.to, &passage.passing), &mut room, |_| true, back)
     }
 
     /// The same from and to the nodes of a patch alone, whose components `values` are; elsewhere there is nothing, and nothing is asked.
@@ -250,26 +250,14 @@ impl<const D: usize> Transform<D> {
         (from, to): (Range<usize>, Range<usize>),
         act: impl Fn(usize, &mut Components<D>),
     ) -> Result<()> {
-        let passing = Passing(from.start.min(to.start)..from.end.max(to.end));
-        let mut room = self.room(&passing);
-        let from = self.some_of(values, from);
-        if from == [false; D] {
-            values.chunks_exact_mut(D).for_each(|node| node[to.clone()].fill(0.0));
-            return Ok(());
-        }
-        let to = std::array::from_fn(|component| to.contains(&component));
-        self.lines_there((&from, &passing), &mut room, |line, component, row| {
-            patch.put::<D>(values, (line, component), row)
-        })?;
-        self.across_lines((&mut room, &passing), (&from, &to), act);
-        let share = self.share();
+        let Some(passage) = self.passage(values, (from, to.clone())) else { return cleared::<D>(values, to) };
+        let put = |line: usize, component: usize, row: &mut [f64]| patch.put::<D>(values, (line, component), row);
+        let (mut room, share) = (self.acted(&passage, put, act)?, self.share());
         self.lines_back(
-            (&to, &passing),
+            (&passage.to, &passage.passing),
             &mut room,
             |line| patch.is_on(line),
-            |line, component, row| {
-                patch.take::<D>(row, (line, component, share), values);
-            },
+            |line, component, row| patch.take::<D>(row, (line, component, share), values),
         )
     }
 
@@ -281,19 +269,32 @@ impl<const D: usize> Transform<D> {
         to: Range<usize>,
         act: impl Fn(usize, &mut Components<D>),
     ) -> Result<()> {
-        let passing = Passing(0..D);
-        let mut room = self.room(&passing);
-        let from = self.some_of(values, 0..D);
-        if from == [false; D] {
-            all.fill(0.0);
-            return Ok(());
-        }
+        let Some(passage) = self.passage(values, (0..D, to)) else { return cleared::<D>(all, 0..D) };
+        let put = |line: usize, component: usize, row: &mut [f64]| patch.put::<D>(values, (line, component), row);
+        let mut room = self.acted(&passage, put, act)?;
+        let back = to_all::<D, D>(all, (self.columns, self.share()));
+        self.lines_back((&passage.to, &passage.passing), &mut room, |_| true, back)
+    }
+
+    /// How components of values pass from and to; none where all that they come from is nothing. Collective.
+    fn passage(&self, values: &[f64], (from, to): (Range<usize>, Range<usize>)) -> Option<Passage<D>> {
+        let passing = Passing(from.start.min(to.start)..from.end.max(to.end));
+        let from = self.some_of(values, from);
         let to = std::array::from_fn(|component| to.contains(&component));
-        self.lines_there((&from, &passing), &mut room, |line, component, row| {
-            patch.put::<D>(values, (line, component), row)
-        })?;
-        self.across_lines((&mut room, &passing), (&from, &to), act);
-        self.lines_back((&to, &passing), &mut room, |_| true, to_all::<D, D>(all, (self.columns, self.share())))
+        (from != [false; D]).then_some(Passage { from, to, passing })
+    }
+
+    /// The room with the waves of what is put on the lines, after what acts on them. Collective.
+    fn acted(
+        &self,
+        Passage { from, to, passing }: &Passage<D>,
+        put: impl Fn(usize, usize, &mut [f64]) -> bool,
+        act: impl Fn(usize, &mut Components<D>),
+    ) -> Result<std::cell::RefMut<'_, Room<D>>> {
+        let mut room = self.room(passing);
+        self.lines_there((from, passing), &mut room, put)?;
+        self.across_lines((&mut room, passing), (from, to), act);
+        Ok(room)
     }
 
     /// Some of the nodes of this rank.
@@ -428,6 +429,12 @@ impl<const D: usize> Transform<D> {
             }
         }
     }
+}
+
+/// Makes these components of each node nothing.
+fn cleared<const D: usize>(values: &mut [f64], components: Range<usize>) -> Result<()> {
+    values.chunks_exact_mut(D).for_each(|node| node[components.clone()].fill(0.0));
+    Ok(())
 }
 
 /// v = -i u along the face.

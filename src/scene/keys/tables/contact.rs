@@ -33,17 +33,7 @@ pub(super) static FRICTION: Keys = Keys {
     }),
 };
 
-const LAWS: [&str; KINDS.len()] = {
-    let mut laws = [""; KINDS.len()];
-    let mut i = 0;
-    while i < KINDS.len() {
-        laws[i] = KINDS[i].name;
-        i += 1;
-    }
-    laws
-};
-
-/// Of each law the key of what it is softened by.
+/// Of each law, by its word, the key of what it is softened by.
 const SOFTNESSES: [(&str, &[&str]); KINDS.len()] = {
     let mut all: [(&str, &[&str]); KINDS.len()] = [("", &[]); KINDS.len()];
     let mut i = 0;
@@ -58,7 +48,7 @@ const SOFTNESSES: [(&str, &[&str]); KINDS.len()] = {
 };
 
 const OF_ANY_LAW: [Key; 5] = [
-    choice("law", &LAWS).required(),
+    choice("law", &words(&SOFTNESSES)).required(),
     Key::new(
         "coefficient",
         Kind::NumberOrFormula(Quantity::within("a friction coefficient, at least 0", At(0.0), Bound::None)),
